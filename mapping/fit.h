@@ -18,7 +18,7 @@ namespace gonio {
 ///    positive, conserve the mass and descend on the divergence. Interpolating the function at the
 ///    crossings would leave several times its variance. The pole is one value for all meridians.
 ///
-/// @param density the density at (r, phi) [any scale], finite and >= 0; phi in [0, pi] or [0, 2 pi).
+/// @param density the density at (r, phi) [any scale], finite and >= 0; phi in [0, pi] or [0, 2 pi].
 ///   Called from one thread, some 10^5 times. Non-finite or negative values count as 0.
 /// @param meridians, parallels the size M >= 2, N >= 2 of the diagram.
 /// @return a grid with the scale of `density`; a function that is 0 everywhere gives zeros.
