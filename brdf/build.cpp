@@ -21,7 +21,7 @@ constexpr double smallest_gap = 0.1 * degree;
 DiagramGrid build_diagram(const BrdfTable& table, double theta_i, const StackOptions& options) {
   DiagramGrid grid = fit_diagram(
       [&](Polar<double> at) { return transfer_density(table, theta_i, at); }, Azimuth::half,
-      options.meridians, options.parallels);
+      {options.meridians, options.parallels, options.tolerance / 2});
   const bool black = std::all_of(grid.density.begin(), grid.density.end(), [](double d) { return d == 0; });
   if (!black) grid = Diagram<double>(grid).grid();
   const double share = black ? 1 : cosine_share;
@@ -34,17 +34,20 @@ DiagramGrid build_diagram(const BrdfTable& table, double theta_i, const StackOpt
 struct Built {
   DiagramGrid grid;
   Diagram<double> diagram;
+
+  /// What the diagram will take when it is sampled, in float.
+  std::size_t bytes() const { return diagram.bytes() / 2; }
 };
 
 /// Relative variance of sampling the table at theta_i with the displacement of two diagrams.
 double interpolation_relvar(const BrdfTable& table, double theta_i, const Built& a, const Built& b, double alpha) {
-  constexpr int side = 24;
+  constexpr int side = 64;
   const Displacement<double> map(a.diagram, b.diagram, alpha);
   double sum = 0, sum2 = 0;
   for (int x = 0; x < side; ++x) {
     for (int y = 0; y < side; ++y) {
       // A fixed lattice inside the cells, so that no row or column of samples shares a coordinate.
-      const double jitter = (x * 7 + y * 11) % side + 0.5;
+      const double jitter = (x * 19 + y * 27) % side + 0.5;
       const auto s = map.sample((x + jitter / side) / side, (y + (side - jitter) / side) / side);
       const double weight = s.pdf > 0 ? transfer_density(table, theta_i, s.at) / s.pdf : 0;
       sum += weight;
@@ -90,7 +93,12 @@ StackGrid build_stack(const BrdfTable& table, const StackOptions& options, const
   // however many threads share the work.
   constexpr std::size_t batch = 4;
   std::map<double, double> error;  // by the lower end of each interval
-  while (built.size() < limit) {
+  const auto bytes = [&] {
+    std::size_t sum = 0;
+    for (const auto& [angle, entry] : built) sum += entry.bytes();
+    return sum;
+  };
+  while (built.size() < limit && bytes() < options.bytes) {
     std::vector<double> lower, unknown;
     for (auto it = built.begin(); std::next(it) != built.end(); ++it)
       if (!error.count(it->first)) unknown.push_back(it->first);
