@@ -204,10 +204,10 @@ glm::vec3 GridTable::eval(const glm::vec3& wi, const glm::vec3& wo) const noexce
   const auto row = [&](int in, int out) {
     const glm::vec3* cells =
         cells_.data() + (static_cast<std::ptrdiff_t>(in) * n_theta_out_ + out) * n_phi_;
-    return mix(cells[p.lo], cells[p.hi], p.t);
+    return lerp(cells[p.lo], cells[p.hi], p.t);
   };
-  return mix(mix(row(i.lo, o.lo), row(i.lo, o.hi), o.t), mix(row(i.hi, o.lo), row(i.hi, o.hi), o.t),
-             i.t);
+  return lerp(lerp(row(i.lo, o.lo), row(i.lo, o.hi), o.t),
+              lerp(row(i.hi, o.lo), row(i.hi, o.hi), o.t), i.t);
 }
 
 }  // namespace gonio

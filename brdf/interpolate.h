@@ -30,7 +30,7 @@ inline Lerp lerp_periodic(float x, int n) noexcept {
 }
 
 template <class T>
-T mix(const T& a, const T& b, float t) noexcept {
+T lerp(const T& a, const T& b, float t) noexcept {
   return a + (b - a) * t;
 }
 

@@ -149,10 +149,10 @@ glm::vec3 MerlTable::eval(const glm::vec3& wi, const glm::vec3& wo) const noexce
 
   const auto row = [&](int ih, int id) {
     const glm::vec3* cells = cells_.data() + (ih * MerlFile::n_theta_d + id) * n_phi_d_;
-    return mix(cells[p.lo], cells[p.hi], p.t);
+    return lerp(cells[p.lo], cells[p.hi], p.t);
   };
-  return mix(mix(row(h.lo, d.lo), row(h.lo, d.hi), d.t), mix(row(h.hi, d.lo), row(h.hi, d.hi), d.t),
-             h.t);
+  return lerp(lerp(row(h.lo, d.lo), row(h.lo, d.hi), d.t),
+              lerp(row(h.hi, d.lo), row(h.hi, d.hi), d.t), h.t);
 }
 
 }  // namespace gonio

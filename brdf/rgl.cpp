@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 namespace gonio {
@@ -24,9 +25,9 @@ float bilinear(const RglFile::Grid& grid, float x, float y) noexcept {
   const Lerp ly = lerp_clamped(y * static_cast<float>(grid.height - 1), grid.height);
   const auto row = [&](int j) {
     const float* values = grid.values.data() + j * grid.width;
-    return mix(values[lx.lo], values[lx.hi], lx.t);
+    return lerp(values[lx.lo], values[lx.hi], lx.t);
   };
-  return mix(row(ly.lo), row(ly.hi), ly.t);
+  return lerp(row(ly.lo), row(ly.hi), ly.t);
 }
 
 }  // namespace
@@ -51,12 +52,20 @@ RglTable::RglTable(RglFile file, const CellPolicies& policies)
   std::vector<CellKind> kinds;
   kinds.reserve(colour_.size());
   for (const glm::vec3& cell : colour_) kinds.push_back(kind_of(cell));
+  const std::vector<glm::vec3> measured = colour_;
   const auto n = theta_i_.size();
   const auto height = static_cast<std::size_t>(colour_height_);
   const auto width = static_cast<std::size_t>(colour_width_);
   counts_ = repair_cells(
       colour_, kinds, policies,
       {{n * height, width, 1, false}, {n, height, width, false}, {1, n, height * width, false}});
+  // Interpolation between a positive and a negative node needs both; value_at() clamps what comes
+  // out.
+  if (policies.negative == CellPolicy::zero) {
+    for (std::size_t i = 0; i < colour_.size(); ++i) {
+      if (kinds[i] == CellKind::negative) colour_[i] = measured[i];
+    }
+  }
 }
 
 Lerp RglTable::slice_at(float theta) const noexcept {
@@ -87,15 +96,15 @@ glm::vec3 RglTable::colour_at(const Lerp& slice, float x, float y) const noexcep
   const auto row = [&](int s, int j) {
     const glm::vec3* cells =
         colour_.data() + (static_cast<std::ptrdiff_t>(s) * colour_height_ + j) * colour_width_;
-    return mix(cells[lx.lo], cells[lx.hi], lx.t);
+    return lerp(cells[lx.lo], cells[lx.hi], lx.t);
   };
-  return mix(mix(row(slice.lo, ly.lo), row(slice.lo, ly.hi), ly.t),
-             mix(row(slice.hi, ly.lo), row(slice.hi, ly.hi), ly.t), slice.t);
+  return lerp(lerp(row(slice.lo, ly.lo), row(slice.lo, ly.hi), ly.t),
+              lerp(row(slice.hi, ly.lo), row(slice.hi, ly.hi), ly.t), slice.t);
 }
 
 glm::vec3 RglTable::value_at(const Normal& normal, float theta_i, const Lerp& slice, float x,
                              float y) const noexcept {
-  const glm::vec3 colour = colour_at(slice, x, y);
+  const glm::vec3 colour = glm::max(colour_at(slice, x, y), 0.0f);
   if (!jacobian_) return colour;
   // The projected area hardly depends on the azimuth of an isotropic file; phi_i = 0 is u_phi =
   // 0.5.
