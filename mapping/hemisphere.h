@@ -1,10 +1,10 @@
 #pragma once
 
+#include <gonio/mapping/concentric.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/vec3.hpp>
-
-#include <gonio/mapping/concentric.h>
 
 namespace gonio {
 
@@ -23,7 +23,8 @@ struct Polar {
 /// @return a unit vector; relative error of each component at most 4 ulp, also next to the pole.
 template <class T>
 Vec3<T> polar_to_direction(Polar<T> p) noexcept {
-  const T sin_theta = p.r * std::sqrt(2 - p.r * p.r);  // sin^2 = (1 - cos)(1 + cos), no cancellation
+  const T sin_theta =
+      p.r * std::sqrt(2 - p.r * p.r);  // sin^2 = (1 - cos)(1 + cos), no cancellation
   return {sin_theta * std::cos(p.phi), sin_theta * std::sin(p.phi), (1 - p.r) * (1 + p.r)};
 }
 
@@ -35,7 +36,8 @@ Polar<T> direction_to_polar(const Vec3<T>& w) noexcept {
   return {std::min(std::sqrt(r2), T(1)), std::atan2(w.y, w.x)};
 }
 
-/// The parallel theta as a radius on the disk; theta in [0, pi/2]. sqrt(1 - cos) as sqrt(2) sin(theta/2).
+/// The parallel theta as a radius on the disk; theta in [0, pi/2]. sqrt(1 - cos) as sqrt(2)
+/// sin(theta/2).
 template <class T>
 T theta_to_radius(T theta) noexcept {
   return std::sqrt(T(2)) * std::sin(theta / 2);

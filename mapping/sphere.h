@@ -1,32 +1,34 @@
 #pragma once
 
-#include <cstddef>
-#include <vector>
-
 #include <gonio/mapping/concentric.h>
 #include <gonio/mapping/diagram.h>
+
+#include <cstddef>
+#include <vector>
 
 namespace gonio {
 
 /// A goniometric diagram on the sphere as data: densities at the crossings of M meridians and N
 /// parallels, any positive scale.
 struct SphereGrid {
-  std::vector<double> phi;      ///< M >= 2 meridians [rad], ascending from 0 to 2 pi; the last repeats the first
-  std::vector<double> theta;    ///< N >= 2 parallels [rad], ascending from 0 to pi/2 or pi, with one at pi/2
+  std::vector<double>
+      phi;  ///< M >= 2 meridians [rad], ascending from 0 to 2 pi; the last repeats the first
+  std::vector<double>
+      theta;  ///< N >= 2 parallels [rad], ascending from 0 to pi/2 or pi, with one at pi/2
   std::vector<double> density;  ///< M x N, meridian-major, finite and >= 0, per solid angle
 };
 
-/// The extension of the goniometric diagram mapping to the whole sphere (the future work of Havran et
-/// al. 2003): unit square -> disk -> sphere, forward and inverse, with an exact pdf.
+/// The extension of the goniometric diagram mapping to the whole sphere (the future work of Havran
+/// et al. 2003): unit square -> disk -> sphere, forward and inverse, with an exact pdf.
 ///
-/// One spherical map instead of two hemispheres: phi inverts the marginal of the whole sphere, and the
-/// disk's radius the conditional along the whole meridian from one pole to the other. Each hemisphere
-/// has the chart r = sqrt(1 - |cos theta|) of its own pole, in which solid angles are areas (dw = 2 r
-/// dr dphi) and the density is bilinear in phi and r; at the equator the two agree. So the map is
-/// continuous, also across the equator, where two separate hemispheres would not meet. The circle that
-/// bounds the disk is the far pole: the inverse is continuous everywhere but at that one point, and no
-/// map of a square onto a sphere can do better. A grid that ends at pi/2 is a diagram of the
-/// hemisphere, at its cost.
+/// One spherical map instead of two hemispheres: phi inverts the marginal of the whole sphere, and
+/// the disk's radius the conditional along the whole meridian from one pole to the other. Each
+/// hemisphere has the chart r = sqrt(1 - |cos theta|) of its own pole, in which solid angles are
+/// areas (dw = 2 r dr dphi) and the density is bilinear in phi and r; at the equator the two agree.
+/// So the map is continuous, also across the equator, where two separate hemispheres would not
+/// meet. The circle that bounds the disk is the far pole: the inverse is continuous everywhere but
+/// at that one point, and no map of a square onto a sphere can do better. A grid that ends at pi/2
+/// is a diagram of the hemisphere, at its cost.
 ///
 /// Local frame: theta = 0 is +z, phi = 0 is +x.
 ///
@@ -51,7 +53,8 @@ class SphereDiagram {
 
   /// The map. u and v in [0, 1]; other values are clamped.
   Place at(T u, T v) const noexcept;
-  /// The place of a direction. @param w a unit vector; below the equator of a hemispherical grid the
+  /// The place of a direction. @param w a unit vector; below the equator of a hemispherical grid
+  /// the
   ///   place is on its edge.
   Place place_of(const Vec3<T>& w) const noexcept;
   /// The inverse map.
@@ -61,9 +64,9 @@ class SphereDiagram {
   Vec3<T> direction(const Place& place) const noexcept;
   /// The pdf per solid angle [1/sr] that the map realises: bilinear in phi and r.
   T pdf(const Place& place) const noexcept;
-  /// The density that is linear in theta instead of r between the same values, in the units of pdf():
-  /// what the goniometric diagram of a luminaire means (Havran et al. 2003, eq. 4). Its quotient by
-  /// pdf() is the correction factor of their section 6.1; 0 where both are 0.
+  /// The density that is linear in theta instead of r between the same values, in the units of
+  /// pdf(): what the goniometric diagram of a luminaire means (Havran et al. 2003, eq. 4). Its
+  /// quotient by pdf() is the correction factor of their section 6.1; 0 where both are 0.
   T theta_linear(const Place& place) const noexcept;
 
   /// True if the grid covers one hemisphere.
@@ -94,7 +97,8 @@ class SphereDiagram {
 
   int meridians_, parallels_, equator_;
   double scale_;
-  std::vector<T> values_;  // phi | cumulative_phi | theta | radius | density | cumulative, one block
+  std::vector<T>
+      values_;  // phi | cumulative_phi | theta | radius | density | cumulative, one block
 };
 
 template <class T>
@@ -150,8 +154,9 @@ typename SphereDiagram<T>::Place SphereDiagram<T>::place_of(const Vec3<T>& w) co
   p.mass = (1 - p.a) * meridian_mass(p.i) + p.a * meridian_mass(p.i + 1);
   const bool near = w.z >= 0 || hemisphere();
   // 1 - |cos| as sin^2 / (1 + |cos|): no digits lost next to the poles.
-  p.radius = w.z < 0 && near ? T(1)
-                             : std::min(std::sqrt((w.x * w.x + w.y * w.y) / (1 + std::abs(w.z))), T(1));
+  p.radius = w.z < 0 && near
+                 ? T(1)
+                 : std::min(std::sqrt((w.x * w.x + w.y * w.y) / (1 + std::abs(w.z))), T(1));
   const T* r = radius();
   if (near) {
     p.j = find_cell(r, equator_ + 1, p.radius);
@@ -176,7 +181,8 @@ SquarePoint<T> SphereDiagram<T>::square_of(const Place& p) const noexcept {
   const RadialCell<T> c = cell(p);
   const T *u0 = cumulative(p.i), *u1 = cumulative(p.i + 1);
   const bool near = p.j < equator_;
-  // Counted from the line of the cell that lies nearer to its pole, where little mass is taken from.
+  // Counted from the line of the cell that lies nearer to its pole, where little mass is taken
+  // from.
   const int from = near ? p.j : p.j + 1;
   const T mass = (1 - p.a) * u0[from] + p.a * u1[from] + (near ? c.mass(p.s) : -c.mass(1 - p.s));
   const T r2 = p.mass > 0 ? std::clamp(mass / p.mass, T(0), T(1)) : T(0);

@@ -1,21 +1,23 @@
 #pragma once
 
+#include <gonio/mapping/light/light_diagram.h>
+#include <gonio/mapping/sphere.h>
+
 #include <functional>
 #include <string>
 #include <vector>
-
-#include <gonio/mapping/light/light_diagram.h>
-#include <gonio/mapping/sphere.h>
 
 namespace gonio {
 
 /// Importance sampling of a luminaire's emission by the goniometric mapping.
 ///
-/// Directions are drawn by the diagram that is linear in r between its parallels; the weight carries
-/// the correction factor of Havran et al. (2003, section 6.1), so that the emitted energy is exactly
-/// that of the light diagram, which is linear in gamma. weight * pdf = intensity in every direction.
+/// Directions are drawn by the diagram that is linear in r between its parallels; the weight
+/// carries the correction factor of Havran et al. (2003, section 6.1), so that the emitted energy
+/// is exactly that of the light diagram, which is linear in gamma. weight * pdf = intensity in
+/// every direction.
 ///
-/// Thread safety: immutable; concurrent use is safe. No allocation, lock or virtual call in the maps.
+/// Thread safety: immutable; concurrent use is safe. No allocation, lock or virtual call in the
+/// maps.
 template <class T>
 class EmissionSampler {
  public:
@@ -31,7 +33,8 @@ class EmissionSampler {
 
   /// @param u,v in [0, 1].
   Sample sample(T u, T v) const noexcept;
-  /// The pdf [1/sr] of sample() in a direction of space (a unit vector); 0 where the luminaire is dark.
+  /// The pdf [1/sr] of sample() in a direction of space (a unit vector); 0 where the luminaire is
+  /// dark.
   T pdf(const Vec3<T>& direction) const noexcept;
   /// The intensity [cd] of the light diagram: what weight * pdf is.
   T intensity(const Vec3<T>& direction) const noexcept;
@@ -45,9 +48,7 @@ class EmissionSampler {
   const SphereDiagram<T>& map() const noexcept { return map_; }
 
  private:
-  Vec3<T> to_local(const Vec3<T>& w) const noexcept {
-    return {dot(w, x_), dot(w, y_), dot(w, z_)};
-  }
+  Vec3<T> to_local(const Vec3<T>& w) const noexcept { return {dot(w, x_), dot(w, y_), dot(w, z_)}; }
   static T dot(const Vec3<T>& a, const Vec3<T>& b) noexcept {
     return a.x * b.x + a.y * b.y + a.z * b.z;
   }
@@ -76,7 +77,8 @@ T EmissionSampler<T>::pdf(const Vec3<T>& direction) const noexcept {
 template <class T>
 T EmissionSampler<T>::intensity(const Vec3<T>& direction) const noexcept {
   const Vec3<T> local = to_local(direction);
-  return covered(local) ? static_cast<T>(mapped_flux_) * map_.theta_linear(map_.place_of(local)) : T(0);
+  return covered(local) ? static_cast<T>(mapped_flux_) * map_.theta_linear(map_.place_of(local))
+                        : T(0);
 }
 
 template <class T>
@@ -90,15 +92,15 @@ extern template class EmissionSampler<double>;
 /// How well and how fast emission is sampled by one method.
 struct EmissionQuality {
   std::string method;
-  double flux;                   ///< mean weight [lm]
-  double relvar;                 ///< Var[w] / E[w]^2, w the weight of a draw
-  double nanoseconds_per_draw;   ///< direction, pdf and weight, on this machine
+  double flux;                  ///< mean weight [lm]
+  double relvar;                ///< Var[w] / E[w]^2, w the weight of a draw
+  double nanoseconds_per_draw;  ///< direction, pdf and weight, on this machine
 };
 
-/// Relative variance of emission on a jittered grid of draws x draws points (fixed seed), for: directions
-/// uniform over the sphere (or the lit hemisphere), a cumulative table of texels of 1 x 1 degree
-/// with the intensity at their centre (as renderers do with an image), the goniometric mapping
-/// with weights linear in r, and with the correction to weights linear in gamma.
+/// Relative variance of emission on a jittered grid of draws x draws points (fixed seed), for:
+/// directions uniform over the sphere (or the lit hemisphere), a cumulative table of texels of 1 x
+/// 1 degree with the intensity at their centre (as renderers do with an image), the goniometric
+/// mapping with weights linear in r, and with the correction to weights linear in gamma.
 /// @throws Error as EmissionSampler. @param draws >= 2.
 std::vector<EmissionQuality> emission_quality(const LightDiagram& diagram, int draws = 256);
 

@@ -56,11 +56,12 @@ TextScanner::TextScanner(std::string name, std::string_view text)
 }
 
 void TextScanner::fail(const char* field, std::string_view found, std::string_view expected) const {
-  throw Error(name_ + ": line " + std::to_string(line_) + ": " + field + ": found " +
+  throw Error(name_ + ": line " + std::to_string(last_line_) + ": " + field + ": found " +
               std::string(found) + ", expected " + std::string(expected));
 }
 
 std::string_view TextScanner::next_line(const char* field) {
+  last_line_ = line_;
   if (at_end()) fail(field, "the end of the file", "a line");
   const std::size_t end = std::min(text_.find_first_of("\r\n", next_), text_.size());
   const std::string_view line = text_.substr(next_, end - next_);
@@ -74,6 +75,7 @@ std::string_view TextScanner::next_line(const char* field) {
 
 std::string_view TextScanner::next_token(const char* field) {
   while (next_ < text_.size() && is_separator(text_[next_])) line_ += text_[next_++] == '\n';
+  last_line_ = line_;
   if (at_end()) fail(field, "the end of the file", "a number");
   const std::size_t begin = next_;
   while (next_ < text_.size() && !is_separator(text_[next_])) ++next_;

@@ -38,7 +38,8 @@ class TextScanner {
   std::string name_;
   std::string_view text_;
   std::size_t next_ = 0;
-  int line_ = 1;
+  int line_ = 1;       // of the next character
+  int last_line_ = 1;  // of what was read last: the one that is at fault
 };
 
 /// `text` without blanks at both ends.

@@ -1,0 +1,3 @@
+# Tests of gonio::light.
+gonio_test(ies_test LIBS gonio::light)
+gonio_test(eulumdat_test LIBS gonio::light)
