@@ -1,3 +1,4 @@
 # Tests of gonio::light.
 gonio_test(ies_test LIBS gonio::light)
 gonio_test(eulumdat_test LIBS gonio::light)
+gonio_test(sphere_test LIBS gonio::light Boost::headers)
