@@ -1,15 +1,15 @@
 #pragma once
 
+#include <gonio/mapping/light/light_diagram.h>
+
 #include <array>
 #include <cstddef>
 #include <vector>
 
-#include <gonio/mapping/light/light_diagram.h>
-
 namespace gonio {
 
-/// How a light distribution texture is reconstructed between its texels (Wallner 2008, section 4.1).
-/// The numbers are those of the GLSL include.
+/// How a light distribution texture is reconstructed between its texels (Wallner 2008,
+/// section 4.1). The numbers are those of the GLSL include.
 enum class LightFilter {
   bilinear = 0,
   catmull_rom = 1,  ///< interpolates, smooth
@@ -20,22 +20,22 @@ enum class LightFilter {
 /// The four weights of a cubic (or linear) filter at fraction t in [0, 1) between taps 1 and 2.
 std::array<float, 4> filter_weights(LightFilter filter, float t) noexcept;
 
-/// A light distribution texture (LDT): the intensities of a luminaire over I_max on an even grid, made
-/// for the graphics card, with the same lookup as mapping/light/glsl/ldt.glsl.
+/// A light distribution texture (LDT): the intensities of a luminaire over I_max on an even grid,
+/// made for the graphics card, with the same lookup as mapping/light/glsl/ldt.glsl.
 ///
 /// Texel (j, i) with j in [1, n_gamma] and i in [0, m_c) lies at gamma = gamma_from + (j - 1)
 /// gamma_step and C = 2 pi i / m_c: values belong to texel centres, the lines of the file. m_c is 1
 /// for a rotationally symmetric luminaire, a texture of one dimension; a luminaire that lights one
 /// hemisphere has texels there alone.
 ///
-/// Columns 0 and n_gamma + 1 are a border, so that a filter needs no special case: beyond a pole the
-/// meridian goes on at C + 180 degrees, beyond the horizon of a hemispherical texture it is
+/// Columns 0 and n_gamma + 1 are a border, so that a filter needs no special case: beyond a pole
+/// the meridian goes on at C + 180 degrees, beyond the horizon of a hemispherical texture it is
 /// mirrored. For the filter that smooths, the border at a pole is 2 mean(first ring) - first ring
 /// instead: the pole keeps one value, whatever the meridian that it is approached on.
 ///
-/// Corrections to the paper: eq. 3 lacks the normalisation of the projected vector that its Listing 1
-/// has; the axis that repeats is t (C), not s; texture coordinates must hit texel centres, which eqs.
-/// 1 and 2 ignore; atan2 replaces arc cosines, which lose half of the digits next to the axis.
+/// Corrections to the paper: eq. 3 lacks the normalisation of the projected vector that its Listing
+/// 1 has; the axis that repeats is t (C), not s; texture coordinates must hit texel centres, which
+/// eqs. 1 and 2 ignore; atan2 replaces arc cosines, which lose half of the digits next to the axis.
 ///
 /// Thread safety: immutable; concurrent use is safe.
 class LightTexture {
@@ -81,11 +81,11 @@ class LightTexture {
 /// max_cd() for the luminaire as measured, other values dim it.
 float point_light(const LightTexture& texture, float intensity, const Vec3<float>& offset) noexcept;
 
-/// The intensity [cd] that two perpendicular planes of a diagram, C0-C180 and C90-C270, imply in any
-/// direction: the direction is projected onto both planes, and between the two intensities found
-/// there an ellipse with these semi-axes is followed (Languenou and Tellier 1992, as described by
-/// Wallner 2008, section 3): I = sqrt(I0^2 cos^2 C + I1^2 sin^2 C). Exact on the two planes; a
-/// rotationally symmetric luminaire is not reproduced exactly between them.
+/// The intensity [cd] that two perpendicular planes of a diagram, C0-C180 and C90-C270, imply in
+/// any direction: the direction is projected onto both planes, and between the two intensities
+/// found there an ellipse with these semi-axes is followed (Languenou and Tellier 1992, as
+/// described by Wallner 2008, section 3): I = sqrt(I0^2 cos^2 C + I1^2 sin^2 C). Exact on the two
+/// planes; a rotationally symmetric luminaire is not reproduced exactly between them.
 double two_plane_intensity(const LightDiagram& diagram, const Vec3<double>& direction) noexcept;
 
 }  // namespace gonio

@@ -1,9 +1,8 @@
+#include <gonio/mapping/error.h>
 #include <gonio/mapping/light/photometry.h>
 
 #include <algorithm>
 #include <cmath>
-
-#include <gonio/mapping/error.h>
 
 namespace gonio {
 namespace {
@@ -14,8 +13,8 @@ struct Point {
   double angle, cd;
 };
 
-/// The intensities of a whole plane as a closed polyline in the angle from the nadir: positive in the
-/// half plane C, negative in C + 180.
+/// The intensities of a whole plane as a closed polyline in the angle from the nadir: positive in
+/// the half plane C, negative in C + 180.
 std::vector<Point> plane_profile(const LightDiagram& d, double c) {
   std::vector<Point> points;
   for (double side : {1.0, -1.0}) {
@@ -25,7 +24,8 @@ std::vector<Point> plane_profile(const LightDiagram& d, double c) {
     for (double edge : {d.gamma.front() - 1e-9, d.gamma.back() + 1e-9})
       if (edge > 0.1 && edge < 3) points.push_back({side * edge, 0});
   }
-  std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.angle < b.angle; });
+  std::sort(points.begin(), points.end(),
+            [](const Point& a, const Point& b) { return a.angle < b.angle; });
   return points;
 }
 
@@ -69,12 +69,14 @@ Photometry photometry(const LightDiagram& diagram) {
   Photometry p;
   p.flux = flux(d);
   p.downward_flux = flux(d, 0, pi<double> / 2);
-  const std::size_t best = static_cast<std::size_t>(std::max_element(d.cd.begin(), d.cd.end()) - d.cd.begin());
+  const std::size_t best =
+      static_cast<std::size_t>(std::max_element(d.cd.begin(), d.cd.end()) - d.cd.begin());
   p.max_cd = d.cd[best];
   p.max_at = {d.c[best / d.gamma.size()], d.gamma[best % d.gamma.size()]};
   p.c0 = spread(d, 0);
   p.c90 = spread(d, pi<double> / 2);
-  for (int k = 0; k < 18; ++k) p.zones.push_back(flux(d, pi<double> * k / 18, pi<double> * (k + 1) / 18));
+  for (int k = 0; k < 18; ++k)
+    p.zones.push_back(flux(d, pi<double> * k / 18, pi<double> * (k + 1) / 18));
   return p;
 }
 
@@ -91,7 +93,8 @@ std::optional<double> efficacy(const Luminaire& light) {
 LightDiagram normalised(LightDiagram diagram, LightNormalisation mode, double target) {
   if (mode == LightNormalisation::none) return diagram;
   const double now = mode == LightNormalisation::flux ? flux(diagram) : max_intensity(diagram);
-  if (!(now > 0)) throw Error("light: normalisation: found a diagram that is dark, expected some light");
+  if (!(now > 0))
+    throw Error("light: normalisation: found a diagram that is dark, expected some light");
   for (double& v : diagram.cd) v *= target / now;
   return diagram;
 }

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <vector>
-
 #include <gonio/mapping/light/luminaire.h>
+
+#include <vector>
 
 namespace gonio {
 
@@ -12,8 +12,9 @@ struct Photometry {
   double downward_flux;  ///< below the horizontal [lm]
   double max_cd;         ///< I_max [cd]
   LightAngles max_at;    ///< where; C = 0 at a pole
-  /// Angles of a plane through the vertical axis: the smallest arc that holds every direction of the
-  /// plane with at least half (beam) or a tenth (field) of the plane's own maximum; 0 for a dark plane.
+  /// Angles of a plane through the vertical axis: the smallest arc that holds every direction of
+  /// the plane with at least half (beam) or a tenth (field) of the plane's own maximum; 0 for a
+  /// dark plane.
   struct Spread {
     double beam, field;
   };
@@ -21,11 +22,12 @@ struct Photometry {
   std::vector<double> zones;  ///< zonal lumens, 18 zones of 10 degrees of gamma from the nadir [lm]
 };
 
-/// Exact for the bilinear diagram, if its polar axis is vertical; others are tabulated every degree.
+/// Exact for the bilinear diagram, if its polar axis is vertical; others are tabulated every
+/// degree.
 Photometry photometry(const LightDiagram& diagram);
 
-/// Light output ratio: flux of the luminaire over that of its lamps; unset if that is unknown or the
-/// photometry is absolute.
+/// Light output ratio: flux of the luminaire over that of its lamps; unset if that is unknown or
+/// the photometry is absolute.
 std::optional<double> light_output_ratio(const Luminaire& luminaire);
 /// Luminous efficacy [lm/W]: flux over input power; unset if that is unknown.
 std::optional<double> efficacy(const Luminaire& luminaire);
