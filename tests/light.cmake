@@ -2,3 +2,5 @@
 gonio_test(ies_test LIBS gonio::light)
 gonio_test(eulumdat_test LIBS gonio::light)
 gonio_test(sphere_test LIBS gonio::light Boost::headers)
+gonio_test(photometry_test LIBS gonio::light)
+gonio_test(ldt_test LIBS gonio::light)
