@@ -7,12 +7,13 @@
 
 namespace gonio {
 
-/// The size of a stack. Both limits hold at once: angles are added until either is met.
+/// The size of a stack: what ends its growth, whichever comes first.
 struct StackOptions {
-  int incident = 48;         ///< at most this many incident angles, >= 2
-  int meridians = 32;        ///< M of every diagram, >= 2
-  int parallels = 32;        ///< N of every diagram, >= 2
-  double tolerance = 0.002;  ///< stop when the estimated relvar between all angles is below this
+  int incident = 128;              ///< at most this many incident angles, >= 2
+  int meridians = 40;              ///< at most this many in a diagram, >= 2
+  int parallels = 40;              ///< at most this many in a diagram, >= 2
+  std::size_t bytes = 480 * 1024;  ///< at most this much memory, once there are seven diagrams
+  double tolerance = 0.003;        ///< relative variance that is good enough, at and between all angles
 };
 
 /// Called now and then with the share of the work that is done, in [0, 1]; from one thread at a time.
@@ -29,7 +30,8 @@ double transfer_density(const BrdfTable& table, double theta_i, Polar<double> at
 
 /// Builds the diagrams of a table: each fitted to its incident angle (fit_diagram()), the angles
 /// placed where displacement between their neighbours fails, measured by the relative variance half
-/// way between them. Uses all cores; the result does not depend on their number.
+/// way between them. If the bytes do not suffice for the tolerance, it is relaxed as long as that
+/// lowers the worst error. Deterministic. Uses all cores; the result does not depend on their number.
 ///
 /// A table that reflects nothing at an angle gets a cosine lobe there.
 /// @throws Error for sizes out of range.
