@@ -1,11 +1,11 @@
-#include "measure_material.h"
+#include <gonio/tools/report/measure_material.h>
 
 #include <chrono>
 #include <fstream>
 #include <mutex>
 #include <thread>
 
-#include "timing.h"
+#include <gonio/tools/report/timing.h>
 
 #include <gonio/brdf/baseline.h>
 #include <gonio/brdf/exr/stack_file.h>

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "report_data.h"
+#include <gonio/tools/report/report_data.h>
 
 #include <gonio/brdf/build.h>
 

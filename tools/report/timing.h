@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "report_data.h"
+#include <gonio/tools/report/report_data.h>
 
 #include <gonio/brdf/proof/random.h>
 

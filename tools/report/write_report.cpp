@@ -1,4 +1,4 @@
-#include "write_report.h"
+#include <gonio/tools/report/write_report.h>
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <iosfwd>
 
-#include "report_data.h"
+#include <gonio/tools/report/report_data.h>
 
 namespace gonio {
 
