@@ -4,9 +4,6 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
-#include <iomanip>
-#include <limits>
-#include <locale>
 #include <optional>
 #include <sstream>
 
@@ -172,25 +169,35 @@ LobeModel parse_model(std::string_view text) {
 }
 
 std::string describe(const LobeModel& model) {
-  std::ostringstream out;
-  out.imbue(std::locale::classic());
-  out << std::setprecision(std::numeric_limits<double>::max_digits10);
-  const auto write = [&out](const char* name, const glm::dvec3& value, char& separator) {
-    out << separator << name << '=' << value.r;
-    if (value.g != value.r || value.b != value.r) out << '/' << value.g << '/' << value.b;
+  std::string out;
+  const auto write_number = [&out](double value) {
+    char buffer[32];
+    out.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
+  };
+  const auto write = [&](const char* name, const glm::dvec3& value, char& separator) {
+    out += separator;
+    out += name;
+    out += '=';
+    write_number(value.r);
+    if (value.g != value.r || value.b != value.r) {
+      out += '/';
+      write_number(value.g);
+      out += '/';
+      write_number(value.b);
+    }
     separator = ',';
   };
   for (const Lobe& lobe : model.lobes) {
-    if (&lobe != model.lobes.data()) out << '+';
+    if (&lobe != model.lobes.data()) out += '+';
     const LobeInfo& info = lobe_info(lobe.kind);
-    out << info.id;
+    out += info.id;
     char separator = ':';
     for (size_t i = 0; i < info.shape.size(); ++i)
       write(info.shape[i].name, lobe.shape[i], separator);
     const std::vector<Parameter>& colors = color_parameters(lobe.kind, lobe.fresnel);
     for (size_t i = 0; i < colors.size(); ++i) write(colors[i].name, lobe.color[i], separator);
   }
-  return out.str();
+  return out;
 }
 
 }  // namespace gonio

@@ -82,7 +82,7 @@ struct LobeModel {
 /// @throws Error naming the part of the text that was not understood, and what was expected there.
 LobeModel parse_model(std::string_view text);
 
-/// The same model as a description that parse_model() reads back (17 digits).
+/// The same model as a description that parse_model() reads back to the same bits.
 std::string describe(const LobeModel& model);
 
 /// The model as JSON: every parameter by name with its unit, the conventions, and the snippets of

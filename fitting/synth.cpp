@@ -2,7 +2,7 @@
 #include <gonio/mapping/error.h>
 
 #include <cmath>
-#include <fstream>
+#include <limits>
 #include <random>
 
 namespace gonio {
@@ -22,29 +22,33 @@ class Noise {
   }
 
  private:
-  double uniform() { return engine_() / 4294967296.0; }
+  double uniform() { return static_cast<double>(engine_()) / 4294967296.0; }
 
   double sigma_;
   std::mt19937 engine_;
 };
 
+// Both directions must be higher than this to count as measured.
+double lowest_cosine(const SynthOptions& options) {
+  return std::fmax(0.0, std::cos(std::fmin(options.measured_to, kPi<double> / 2)));
+}
+
 }  // namespace
 
-std::vector<double> synthesize_merl(const LobeModel& model, const SynthOptions& options) {
-  constexpr int kThetaH = 90, kThetaD = 90, kPhiD = 180;
-  constexpr double kFileUnit[3] = {1 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0};
-  constexpr double kDegree = kPi<double> / 180;
-  constexpr std::size_t kPlane = std::size_t{kThetaH} * kThetaD * kPhiD;
-  std::vector<double> values(kMerlCells, -1.0);
-  const double lowest = std::fmax(0.0, std::cos(std::fmin(options.measured_to, kPi<double> / 2)));
+MerlFile synthesize_merl(const LobeModel& model, const SynthOptions& options) {
+  MerlFile file;
+  const std::size_t plane = file.cells();
+  file.values.assign(3 * plane, -1.0);
+  const double lowest = lowest_cosine(options);
   Noise noise(options);
-  for (int h = 0; h < kThetaH; ++h) {
-    const double u = (h + 0.5) / kThetaH, theta_h = u * u * kPi<double> / 2;
+  std::size_t cell = 0;
+  for (int h = 0; h < file.n_theta_h; ++h) {
+    const double u = (h + 0.5) / file.n_theta_h, theta_h = u * u * kPi<double> / 2;
     const double sin_h = std::sin(theta_h), cos_h = std::cos(theta_h);
-    for (int d = 0; d < kThetaD; ++d) {
-      const double theta_d = (d + 0.5) * kDegree;
-      for (int p = 0; p < kPhiD; ++p) {
-        const double phi_d = (p + 0.5) * kDegree;
+    for (int d = 0; d < file.n_theta_d; ++d) {
+      const double theta_d = (d + 0.5) / file.n_theta_d * kPi<double> / 2;
+      for (int p = 0; p < file.n_phi_d; ++p, ++cell) {
+        const double phi_d = (p + 0.5) / file.n_phi_d * kPi<double>;
         // Rusinkiewicz 1998: the difference vector, turned by theta_h about y.
         const glm::dvec3 diff(std::sin(theta_d) * std::cos(phi_d),
                               std::sin(theta_d) * std::sin(phi_d), std::cos(theta_d));
@@ -53,24 +57,46 @@ std::vector<double> synthesize_merl(const LobeModel& model, const SynthOptions& 
         const glm::dvec3 wo = reflect_about(wi, glm::dvec3(sin_h, 0, cos_h));
         if (!(wi.z > lowest && wo.z > lowest)) continue;
         const glm::dvec3 value = model.eval(wi, wo);
-        const std::size_t cell = (std::size_t(h) * kThetaD + d) * kPhiD + p;
-        for (int c = 0; c < 3; ++c) values[c * kPlane + cell] = value[c] * noise() / kFileUnit[c];
+        for (int c = 0; c < 3; ++c)
+          file.values[c * plane + cell] = value[c] * noise() / merl_scale[c];
       }
     }
   }
-  return values;
+  return file;
 }
 
-void save_merl(const std::filesystem::path& path, const LobeModel& model,
-               const SynthOptions& options) {
-  const std::vector<double> values = synthesize_merl(model, options);
-  const std::int32_t dimensions[3] = {90, 90, 180};
-  std::ofstream file(path, std::ios::binary);
-  file.write(reinterpret_cast<const char*>(dimensions), sizeof dimensions);
-  file.write(reinterpret_cast<const char*>(values.data()),
-             static_cast<std::streamsize>(values.size() * sizeof(double)));
-  file.close();
-  if (!file) throw Error(path.string() + ": cannot write the table");
+GridFile synthesize_grid(const LobeModel& model, int n_theta, int n_phi,
+                         const SynthOptions& options) {
+  if (n_theta < 2 || n_phi < 2) {
+    throw Error("synthetic grid: size is " + std::to_string(n_theta) + " x " +
+                std::to_string(n_theta) + " x " + std::to_string(n_phi) +
+                "; expected at least 2 in each direction");
+  }
+  GridFile file;
+  file.n_theta_in = file.n_theta_out = n_theta;
+  file.n_phi = n_phi;
+  file.values.reserve(std::size_t{3} * n_theta * n_theta * n_phi);
+  const double lowest = lowest_cosine(options);
+  Noise noise(options);
+  for (int i = 0; i < n_theta; ++i) {
+    const double theta_i = (i + 0.5) / n_theta * kPi<double> / 2;
+    const glm::dvec3 wi(std::sin(theta_i), 0, std::cos(theta_i));
+    for (int o = 0; o < n_theta; ++o) {
+      const double theta_o = (o + 0.5) / n_theta * kPi<double> / 2;
+      for (int p = 0; p < n_phi; ++p) {
+        const double phi = (p + 0.5) / n_phi * kPi<double>;
+        const glm::dvec3 wo(std::sin(theta_o) * std::cos(phi), std::sin(theta_o) * std::sin(phi),
+                            std::cos(theta_o));
+        const bool measured = wi.z > lowest && wo.z > lowest;
+        const glm::dvec3 value = model.eval(wi, wo);
+        for (int c = 0; c < 3; ++c) {
+          file.values.push_back(measured ? static_cast<float>(value[c] * noise())
+                                         : std::numeric_limits<float>::quiet_NaN());
+        }
+      }
+    }
+  }
+  return file;
 }
 
 }  // namespace gonio

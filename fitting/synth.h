@@ -20,17 +20,15 @@ struct SynthOptions {
   double measured_to = 2;
 };
 
-/// The number of doubles in a MERL table: 3 x 90 x 90 x 180.
-inline constexpr std::size_t kMerlCells = std::size_t{3} * 90 * 90 * 180;
+/// The model in the layout of a MERL `.binary`, 180 phi_d bins, evaluated at the centres of the
+/// cells; -1 where a direction is below the horizon or not measured.
+MerlFile synthesize_merl(const LobeModel& model, const SynthOptions& options = {});
 
-/// The model in the layout of a MERL `.binary`: file units (f_r 1500/1, 1500/1.15, 1500/1.66),
-/// evaluated at the centres of the cells; -1 where a direction is below the horizon or not
-/// measured.
-std::vector<double> synthesize_merl(const LobeModel& model, const SynthOptions& options = {});
-
-/// Writes synthesize_merl() as a MERL `.binary` file (34,992,012 bytes).
-/// @throws Error if the file cannot be written.
-void save_merl(const std::filesystem::path& path, const LobeModel& model,
-               const SynthOptions& options = {});
+/// The model on a regular grid (the layout of MBSDF), RGB, evaluated at the centres of the cells;
+/// NaN where not measured. A lobe narrower than a cell is not resolved: 90 x 90 x 180 has cells of
+/// one degree.
+/// @throws Error if n_theta or n_phi is less than 2.
+GridFile synthesize_grid(const LobeModel& model, int n_theta = 90, int n_phi = 180,
+                         const SynthOptions& options = {});
 
 }  // namespace gonio
