@@ -1,10 +1,10 @@
 #pragma once
 
+#include <gonio/brdf/grid.h>
+#include <gonio/brdf/merl.h>
 #include <gonio/fitting/model.h>
 
 #include <cstdint>
-#include <filesystem>
-#include <vector>
 
 namespace gonio {
 

@@ -6,7 +6,7 @@
 
 /// Diffuse lobes with albedo 1. A lobe is a small value with the parameters as members; eval()
 /// takes its parameters in any scalar T (float, double, ceres::Jet) and the angles in S. All of
-/// them propose directions by the cosine: see cosine_sample(), cosine_pdf().
+/// them propose directions by the cosine.
 namespace gonio {
 
 /// Cosine-distributed direction (Malley's method). u, v in [0, 1).
