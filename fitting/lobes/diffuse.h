@@ -3,6 +3,7 @@
 #include <gonio/fitting/lobes/angles.h>
 
 #include <cmath>
+#include <optional>
 
 /// Diffuse lobes with albedo 1. A lobe is a small value with the parameters as members; eval()
 /// takes its parameters in any scalar T (float, double, ceres::Jet) and the angles in S. All of
