@@ -1,0 +1,68 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+namespace gonio {
+
+template <class T>
+inline constexpr T pi = static_cast<T>(3.141592653589793238462643383279502884L);
+
+/// A point of the unit square; both coordinates in [0, 1].
+template <class T>
+struct SquarePoint {
+  T u, v;
+};
+
+/// A point of the unit disk in polar form, as the two uniform numbers that the following maps use:
+/// `turn` = phi_B / 2 pi in [0, 1) and `r2` = r_B^2 in [0, 1].
+template <class T>
+struct DiskPoint {
+  T turn, r2;
+};
+
+/// M_B: the concentric map of Shirley and Chiu (1997) from the unit square to the unit disk, area
+/// preserving and bicontinuous, with phi_B in [0, 2 pi) as Havran et al. (2003, section 3.1) ask
+/// instead of the original [-pi/4, 7 pi/4).
+///
+/// Polar by construction: one division, no trigonometry, and r_B^2 is exact for exact inputs.
+/// @param u,v in [0, 1]. Other values give a point outside the disk.
+template <class T>
+DiskPoint<T> square_to_disk(T u, T v) noexcept {
+  const T x = 2 * u - 1, y = 2 * v - 1;
+  // The four triangles of the square; each spans a quarter turn about its axis.
+  T turn, radius;
+  if (std::abs(x) > std::abs(y)) {
+    radius = x;
+    turn = (x > 0 ? T(0) : T(0.5)) + y / x / 8;
+  } else if (y != 0) {
+    radius = y;
+    turn = (y > 0 ? T(0.25) : T(0.75)) - x / y / 8;
+  } else {
+    return {0, 0};
+  }
+  if (turn < 0) turn += 1;
+  return {turn < 1 ? turn : T(0), radius * radius};  // -tiny + 1 rounds to 1, which is 0 again
+}
+
+/// The inverse of square_to_disk(). @param p turn in [0, 1), r2 in [0, 1].
+template <class T>
+SquarePoint<T> disk_to_square(DiskPoint<T> p) noexcept {
+  const T radius = std::sqrt(p.r2);
+  const T octant = 8 * p.turn;  // in units of pi/4; the x axis is at 0 and 8
+  T x, y;
+  if (octant < 1) {
+    x = radius, y = radius * octant;
+  } else if (octant < 3) {
+    x = radius * (2 - octant), y = radius;
+  } else if (octant < 5) {
+    x = -radius, y = radius * (4 - octant);
+  } else if (octant < 7) {
+    x = radius * (octant - 6), y = -radius;
+  } else {
+    x = radius, y = radius * (octant - 8);
+  }
+  return {std::clamp((x + 1) / 2, T(0), T(1)), std::clamp((y + 1) / 2, T(0), T(1))};
+}
+
+}  // namespace gonio

@@ -1,0 +1,193 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <gonio/mapping/hemisphere.h>
+#include <gonio/mapping/radial_cell.h>
+
+namespace gonio {
+
+/// How much of the azimuth a diagram stores.
+enum class Azimuth {
+  half,  ///< [0, pi], mirrored to negative phi: isotropic BRDFs
+  full   ///< [0, 2 pi]: anything else; the last meridian repeats the first
+};
+
+/// A goniometric diagram as data: densities at the crossings of M meridians and N parallels, any
+/// positive scale. Between them the density is bilinear in phi and r.
+struct DiagramGrid {
+  Azimuth azimuth = Azimuth::half;
+  std::vector<double> phi;      ///< M >= 2 meridians, ascending, from 0 to pi (half) or 2 pi (full)
+  std::vector<double> r;        ///< N >= 2 parallels as r = sqrt(1 - cos theta), ascending, from 0 to 1
+  std::vector<double> density;  ///< M x N, meridian-major, finite and >= 0, in 1/sr up to a factor
+
+  double& at(std::size_t meridian, std::size_t parallel) { return density[meridian * r.size() + parallel]; }
+  double at(std::size_t meridian, std::size_t parallel) const {
+    return density[meridian * r.size() + parallel];
+  }
+};
+
+/// One diagram ready to be sampled: the maps M_C and M_D of Havran et al. (2003), forward and
+/// inverse, as the inverse-CDF maps that they are (marginal in phi, conditional in r).
+///
+/// Both stages take uniform numbers in [0, 1]: `u` goes over the stored azimuth (half or full), `v`
+/// is r_B^2. The density of the image is the stored density over its integral: pdf() is exact.
+/// No map iterates; each does one binary search over the lines and a fixed number of operations.
+///
+/// Memory: 2 M N + 2 M + N values of T (the paper's 2 M N + 3 M + 2 without the array that its
+/// radius compensation, eq. 27, needs).
+///
+/// Thread safety: immutable; concurrent use is safe.
+template <class T>
+class Diagram {
+ public:
+  /// Normalises `grid` to a pdf per solid angle over the whole hemisphere and precomputes the
+  /// cumulative arrays, from the values as rounded to T, in at least double.
+  /// @throws Error if lines are not ascending over the stated range, sizes do not match, a density
+  ///   is negative or not finite, or all are zero.
+  explicit Diagram(const DiagramGrid& grid);
+
+  /// A position between the meridians i and i + 1, and the marginal density there.
+  struct Meridian {
+    int i;
+    T a;     ///< 0 at meridian i, 1 at i + 1
+    T phi;   ///< [rad], in the stored range
+    T mass;  ///< integral of the pdf over r (2 r dr): d(mass)/dphi
+  };
+  /// A position along a meridian, and the pdf [1/sr] there.
+  struct Parallel {
+    T r, pdf;
+  };
+
+  /// M_C forward, eqs. 20-25: the meridian below which the fraction u of the mass lies. The
+  /// quadratic (eq. 24) is solved in the form without cancellation. u outside [0, 1] is clamped.
+  Meridian meridian_at(T u) const noexcept;
+  /// The meridian through `phi`, clamped to the stored range.
+  Meridian meridian_through(T phi) const noexcept;
+  /// M_C inverse: the u of a meridian.
+  T u_of(const Meridian& m) const noexcept;
+
+  /// M_D forward, eqs. 10-19: the radius below which the fraction v of the meridian's mass lies.
+  Parallel parallel_at(const Meridian& m, T v) const noexcept;
+  /// M_D inverse: the v of radius r, clamped to [0, 1].
+  T v_of(const Meridian& m, T r) const noexcept;
+  /// The pdf [1/sr] on a meridian at radius r, clamped to [0, 1].
+  T pdf(const Meridian& m, T r) const noexcept;
+
+  /// The mass of the stored azimuth: 1/2 for half diagrams, 1 for full ones, to rounding.
+  T mass() const noexcept { return cumulative_phi()[meridians_ - 1]; }
+  Azimuth azimuth() const noexcept { return azimuth_; }
+  int meridians() const noexcept { return meridians_; }
+  int parallels() const noexcept { return parallels_; }
+  std::size_t bytes() const noexcept { return sizeof(*this) + values_.capacity() * sizeof(T); }
+
+  /// The lines and normalised densities; building a diagram from them gives this one again, bit by bit.
+  DiagramGrid grid() const;
+
+ private:
+  const T* phi() const noexcept { return values_.data(); }
+  const T* cumulative_phi() const noexcept { return phi() + meridians_; }
+  const T* r() const noexcept { return phi() + 2 * meridians_; }
+  const T* density(int i) const noexcept { return r() + parallels_ + i * parallels_; }
+  /// U(i, j) of eq. 19: the mass of meridian i up to parallel j.
+  const T* cumulative(int i) const noexcept { return density(meridians_ + i); }
+  T meridian_mass(int i) const noexcept { return cumulative(i)[parallels_ - 1]; }
+
+  Azimuth azimuth_;
+  int meridians_, parallels_;
+  std::vector<T> values_;  // phi | cumulative_phi | r | density | cumulative, one block
+};
+
+/// The largest i in [0, n - 2] with x[i] < t (0 if there is none): the cell that ends at or after t
+/// and, when x is cumulative and t > 0, has mass.
+template <class T>
+inline int find_cell(const T* x, int n, T t) noexcept {
+  int first = 0;
+  for (int length = n - 1; length > 1;) {
+    const int half = length / 2;
+    first = x[first + half] < t ? first + half : first;
+    length -= half;
+  }
+  return first;
+}
+
+template <class T>
+typename Diagram<T>::Meridian Diagram<T>::meridian_at(T u) const noexcept {
+  const T* cumulative_mass = cumulative_phi();
+  const T target = std::clamp(u, T(0), T(1)) * mass();
+  const int i = find_cell(cumulative_mass, meridians_, target);
+  const T m0 = meridian_mass(i), m1 = meridian_mass(i + 1);
+  const T width = phi()[i + 1] - phi()[i];
+  // Fraction x of the cell's mass; mass (1 - a) m0 + a m1, in units of m0 + m1, so that neither
+  // very small masses underflow nor nearly equal ones cancel: a = x / (n0 + sqrt(n0^2 + (1 - 2 n0) x)).
+  const T sum = m0 + m1;
+  if (!(sum > 0)) return {i, 0, phi()[i], 0};
+  const T x = std::clamp(2 * (target - cumulative_mass[i]) / (width * sum), T(0), T(1));
+  const T n0 = m0 / sum;
+  const T denominator = n0 + std::sqrt(std::max(n0 * n0 + (1 - 2 * n0) * x, T(0)));
+  const T a = denominator > 0 ? std::min(x / denominator, T(1)) : T(0);
+  return {i, a, phi()[i] + a * width, (1 - a) * m0 + a * m1};
+}
+
+template <class T>
+typename Diagram<T>::Meridian Diagram<T>::meridian_through(T angle) const noexcept {
+  const int i = find_cell(phi(), meridians_, angle);
+  const T width = phi()[i + 1] - phi()[i];
+  const T a = std::clamp((angle - phi()[i]) / width, T(0), T(1));
+  return {i, a, phi()[i] + a * width, (1 - a) * meridian_mass(i) + a * meridian_mass(i + 1)};
+}
+
+template <class T>
+T Diagram<T>::u_of(const Meridian& m) const noexcept {
+  const T width = phi()[m.i + 1] - phi()[m.i];
+  const T inside = m.a * width * (meridian_mass(m.i) + m.mass) / 2;
+  return std::min((cumulative_phi()[m.i] + inside) / mass(), T(1));
+}
+
+template <class T>
+typename Diagram<T>::Parallel Diagram<T>::parallel_at(const Meridian& m, T v) const noexcept {
+  const T target = std::clamp(v, T(0), T(1)) * m.mass;
+  const T *u0 = cumulative(m.i), *u1 = cumulative(m.i + 1);
+  const T a = m.a, b = 1 - a;
+  int j = 0;
+  for (int length = parallels_ - 1; length > 1;) {  // find_cell() on the blend of two rows, eq. 18
+    const int half = length / 2;
+    j = b * u0[j + half] + a * u1[j + half] < target ? j + half : j;
+    length -= half;
+  }
+  const T *d0 = density(m.i), *d1 = density(m.i + 1);
+  const RadialCell<T> cell{r()[j], r()[j + 1] - r()[j], b * d0[j] + a * d1[j],
+                           b * d0[j + 1] + a * d1[j + 1]};
+  const T cell_mass = cell.mass(1);
+  const T inside = target - (b * u0[j] + a * u1[j]);
+  const T s = inside > 0 && cell_mass > 0 ? cell.invert(std::min(inside / cell_mass, T(1))) : T(0);
+  return {cell.r0 + s * cell.h, cell.density(s)};
+}
+
+template <class T>
+T Diagram<T>::v_of(const Meridian& m, T radius) const noexcept {
+  const int j = find_cell(r(), parallels_, radius);
+  const T a = m.a, b = 1 - a;
+  const T *d0 = density(m.i), *d1 = density(m.i + 1);
+  const RadialCell<T> cell{r()[j], r()[j + 1] - r()[j], b * d0[j] + a * d1[j],
+                           b * d0[j + 1] + a * d1[j + 1]};
+  const T s = std::clamp((radius - cell.r0) / cell.h, T(0), T(1));
+  const T below = b * cumulative(m.i)[j] + a * cumulative(m.i + 1)[j];
+  return m.mass > 0 ? std::min((below + cell.mass(s)) / m.mass, T(1)) : T(0);
+}
+
+template <class T>
+T Diagram<T>::pdf(const Meridian& m, T radius) const noexcept {
+  const int j = find_cell(r(), parallels_, radius);
+  const T s = std::clamp((radius - r()[j]) / (r()[j + 1] - r()[j]), T(0), T(1));
+  const T *d0 = density(m.i), *d1 = density(m.i + 1);
+  const T a = m.a, b = 1 - a;
+  return (1 - s) * (b * d0[j] + a * d1[j]) + s * (b * d0[j + 1] + a * d1[j + 1]);
+}
+
+extern template class Diagram<float>;
+extern template class Diagram<double>;
+extern template class Diagram<long double>;
+
+}  // namespace gonio

@@ -1,0 +1,255 @@
+#include <gonio/mapping/fit.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include <gonio/mapping/error.h>
+
+namespace gonio {
+namespace {
+
+using Axis = std::vector<double>;
+
+/// The function on a tensor grid of reference lines, with the quadrature weight of every axis.
+struct Reference {
+  Axis phi, r;
+  Axis phi_weight, r_weight;  // integrals of the axes' hat functions: dphi and 2 r dr
+  std::vector<double> value;  // phi-major
+  double floor;               // what a value is at least taken for when errors are put relative to it
+
+  double at(std::size_t p, std::size_t j) const { return value[p * r.size() + j]; }
+};
+
+Axis uniform(double last, std::size_t count) {
+  Axis axis(count);
+  for (std::size_t k = 0; k < count; ++k) axis[k] = last * static_cast<double>(k) / static_cast<double>(count - 1);
+  return axis;
+}
+
+Axis hat_weights(const Axis& x, bool radial) {
+  Axis weight(x.size(), 0.0);
+  for (std::size_t k = 0; k + 1 < x.size(); ++k) {
+    const double a = x[k], b = x[k + 1], h = b - a;
+    weight[k] += radial ? h * (2 * a + b) / 3 : h / 2;
+    weight[k + 1] += radial ? h * (a + 2 * b) / 3 : h / 2;
+  }
+  return weight;
+}
+
+Reference tabulate(const std::function<double(Polar<double>)>& density, Axis phi, Axis r) {
+  Reference ref;
+  ref.phi = std::move(phi);
+  ref.r = std::move(r);
+  ref.phi_weight = hat_weights(ref.phi, false);
+  ref.r_weight = hat_weights(ref.r, true);
+  ref.value.resize(ref.phi.size() * ref.r.size());
+  double mass = 0;
+  for (std::size_t p = 0; p < ref.phi.size(); ++p) {
+    for (std::size_t j = 0; j < ref.r.size(); ++j) {
+      const double g = density({ref.r[j], ref.phi[p]});
+      const double value = std::isfinite(g) && g > 0 ? g : 0;
+      ref.value[p * ref.r.size() + j] = value;
+      mass += ref.phi_weight[p] * ref.r_weight[j] * value;
+    }
+  }
+  ref.floor = 1e-3 * mass / ref.phi.back();  // the mean density is mass / (azimuth range)
+  return ref;
+}
+
+/// New lines where the function bends: h ~ (g''^2 / g)^(-1/5) spreads the error of linear
+/// interpolation evenly. A share of the lines stays evenly spaced, to see what the last grid missed.
+Axis concentrate(const Reference& ref, bool radial) {
+  const Axis& x = radial ? ref.r : ref.phi;
+  const std::size_t count = x.size(), others = radial ? ref.phi.size() : ref.r.size();
+  Axis bend(count, 0.0);
+  for (std::size_t k = 1; k + 1 < count; ++k) {
+    const double h0 = x[k] - x[k - 1], h1 = x[k + 1] - x[k];
+    for (std::size_t o = 0; o < others; ++o) {
+      const auto g = [&](std::size_t i) { return radial ? ref.at(o, i) : ref.at(i, o); };
+      const double second = 2 * ((g(k + 1) - g(k)) / h1 - (g(k) - g(k - 1)) / h0) / (h0 + h1);
+      const double weight = radial ? ref.phi_weight[o] * x[k] : ref.r_weight[o];
+      bend[k] += weight * second * second / (g(k) + ref.floor);
+    }
+    bend[k] = std::pow(bend[k], 0.2);
+  }
+  bend.front() = bend[1];
+  bend.back() = bend[count - 2];
+  // Neighbours widen the peaks: a bend between two lines is seen on either side only.
+  Axis density(count);
+  double mean = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    density[k] = std::max({bend[k], bend[k > 0 ? k - 1 : k], bend[std::min(k + 1, count - 1)]});
+    if (k > 0) mean += (x[k] - x[k - 1]) * (density[k - 1] + density[k]) / 2;
+  }
+  mean /= x.back();
+  if (!(mean > 0)) return x;
+  Axis cumulative(count, 0.0);
+  for (std::size_t k = 1; k < count; ++k)
+    cumulative[k] = cumulative[k - 1] + (x[k] - x[k - 1]) * ((density[k - 1] + density[k]) / 2 + mean / 2);
+  Axis lines(count);
+  std::size_t k = 0;
+  for (std::size_t n = 0; n < count; ++n) {
+    const double target = cumulative.back() * static_cast<double>(n) / static_cast<double>(count - 1);
+    while (k + 2 < count && cumulative[k + 1] < target) ++k;
+    const double t = (target - cumulative[k]) / (cumulative[k + 1] - cumulative[k]);
+    lines[n] = x[k] + std::clamp(t, 0.0, 1.0) * (x[k + 1] - x[k]);
+  }
+  lines.front() = 0;
+  lines.back() = x.back();
+  return lines;
+}
+
+/// The squared error, relative to the density, of interpolating linearly between the lines a and b,
+/// for all pairs, summed over the other axis. Running sums make every pair a constant cost.
+std::vector<double> strip_errors(const Reference& ref, bool radial) {
+  const Axis& x = radial ? ref.r : ref.phi;
+  const Axis& weight = radial ? ref.r_weight : ref.phi_weight;
+  const Axis& other_weight = radial ? ref.phi_weight : ref.r_weight;
+  const std::size_t count = x.size();
+  std::vector<double> error(count * count, 0.0);
+  struct Sums {
+    double one = 0, x = 0, xx = 0, g = 0, gx = 0, gg = 0;
+  };
+  std::vector<Sums> sums(count + 1);
+  for (std::size_t o = 0; o < other_weight.size(); ++o) {
+    const auto g = [&](std::size_t i) { return radial ? ref.at(o, i) : ref.at(i, o); };
+    for (std::size_t k = 0; k < count; ++k) {
+      const double gk = g(k), w = weight[k] * other_weight[o] / (gk + ref.floor), xk = x[k];
+      const Sums& s = sums[k];
+      sums[k + 1] = {s.one + w, s.x + w * xk, s.xx + w * xk * xk, s.g + w * gk, s.gx + w * gk * xk, s.gg + w * gk * gk};
+    }
+    for (std::size_t a = 0; a + 2 < count; ++a) {
+      const double ga = g(a);
+      const Sums& from = sums[a + 1];
+      for (std::size_t b = a + 2; b < count; ++b) {
+        const double slope = (g(b) - ga) / (x[b] - x[a]), start = ga - slope * x[a];
+        const Sums& to = sums[b];
+        const double e = (to.gg - from.gg) - 2 * start * (to.g - from.g) - 2 * slope * (to.gx - from.gx) +
+                         start * start * (to.one - from.one) + 2 * start * slope * (to.x - from.x) +
+                         slope * slope * (to.xx - from.xx);
+        error[a * count + b] += std::max(e, 0.0);
+      }
+    }
+  }
+  return error;
+}
+
+/// The `keep` lines, first and last among them, with the least summed strip error.
+std::vector<std::size_t> best_lines(const std::vector<double>& error, std::size_t count, std::size_t keep) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  std::vector<double> best(count, infinite), next(count);
+  std::vector<std::size_t> from(keep * count, 0);
+  best[0] = 0;
+  for (std::size_t n = 1; n < keep; ++n) {
+    std::fill(next.begin(), next.end(), infinite);
+    for (std::size_t b = n; b < count; ++b) {
+      for (std::size_t a = n - 1; a < b; ++a) {
+        const double e = best[a] + error[a * count + b];
+        if (e < next[b]) next[b] = e, from[n * count + b] = a;
+      }
+    }
+    best.swap(next);
+  }
+  std::vector<std::size_t> lines(keep);
+  lines[keep - 1] = count - 1;
+  for (std::size_t n = keep - 1; n > 0; --n) lines[n - 1] = from[n * count + lines[n]];
+  return lines;
+}
+
+/// Where each reference line lies between the chosen lines.
+struct Position {
+  std::size_t cell;
+  double s;
+};
+
+std::vector<Position> positions(const Axis& x, const std::vector<std::size_t>& lines) {
+  std::vector<Position> result(x.size());
+  std::size_t cell = 0;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    while (cell + 2 < lines.size() && k >= lines[cell + 1]) ++cell;
+    const double a = x[lines[cell]], b = x[lines[cell + 1]];
+    result[k] = {cell, (x[k] - a) / (b - a)};
+  }
+  return result;
+}
+
+/// Richardson-Lucy steps on the densities at the crossings.
+void fit_densities(const Reference& ref, const std::vector<Position>& across,
+                   const std::vector<Position>& along, DiagramGrid& grid) {
+  constexpr int steps = 30;
+  constexpr double over_relaxation = 1.7;  // converges for any power in (0, 2)
+  const std::size_t m = grid.phi.size(), n = grid.r.size();
+  for (double& d : grid.density) d = std::max(d, ref.floor);
+  std::vector<double> ratio(m * n), support(m * n);
+  for (int step = 0; step < steps; ++step) {
+    std::fill(ratio.begin(), ratio.end(), 0.0);
+    std::fill(support.begin(), support.end(), 0.0);
+    for (std::size_t p = 0; p < ref.phi.size(); ++p) {
+      const auto [i, a] = across[p];
+      for (std::size_t j = 0; j < ref.r.size(); ++j) {
+        const auto [k, s] = along[j];
+        const std::size_t corner[4] = {i * n + k, i * n + k + 1, (i + 1) * n + k, (i + 1) * n + k + 1};
+        const double basis[4] = {(1 - a) * (1 - s), (1 - a) * s, a * (1 - s), a * s};
+        double model = 0;
+        for (int c = 0; c < 4; ++c) model += basis[c] * grid.density[corner[c]];
+        const double weight = ref.phi_weight[p] * ref.r_weight[j];
+        const double q = model > 0 ? ref.at(p, j) / model : 0;
+        for (int c = 0; c < 4; ++c) {
+          ratio[corner[c]] += weight * basis[c] * q;
+          support[corner[c]] += weight * basis[c];
+        }
+      }
+    }
+    const auto share = [&](std::size_t x, std::size_t y) {
+      const double r = ratio[x] + ratio[y], t = support[x] + support[y];
+      ratio[x] = ratio[y] = r, support[x] = support[y] = t;
+    };
+    if (grid.azimuth == Azimuth::full)  // the seam is one meridian
+      for (std::size_t k = 0; k < n; ++k) share(k, (m - 1) * n + k);
+    double pole_ratio = 0, pole_support = 0;
+    const std::size_t distinct = grid.azimuth == Azimuth::full ? m - 1 : m;
+    for (std::size_t i = 0; i < distinct; ++i) pole_ratio += ratio[i * n], pole_support += support[i * n];
+    for (std::size_t i = 0; i < m; ++i) ratio[i * n] = pole_ratio, support[i * n] = pole_support;
+    for (std::size_t c = 0; c < m * n; ++c)
+      if (support[c] > 0) grid.density[c] *= std::pow(ratio[c] / support[c], over_relaxation);
+  }
+}
+
+}  // namespace
+
+DiagramGrid fit_diagram(const std::function<double(Polar<double>)>& density, Azimuth azimuth,
+                        int meridians, int parallels) {
+  if (meridians < 2 || parallels < 2)
+    throw Error("diagram fit: found a size of " + std::to_string(meridians) + " x " +
+                std::to_string(parallels) + ", expected at least 2 x 2");
+  const std::size_t m = static_cast<std::size_t>(meridians), n = static_cast<std::size_t>(parallels);
+  const double range = azimuth == Azimuth::half ? pi<double> : 2 * pi<double>;
+  Reference ref = tabulate(density, uniform(range, std::max<std::size_t>(97, 4 * m + 1)),
+                           uniform(1.0, std::max<std::size_t>(161, 5 * n + 1)));
+  for (int round = 0; round < 2; ++round) {
+    Axis phi = concentrate(ref, false), r = concentrate(ref, true);
+    ref = tabulate(density, std::move(phi), std::move(r));
+  }
+  const auto across = best_lines(strip_errors(ref, false), ref.phi.size(), m);
+  const auto along = best_lines(strip_errors(ref, true), ref.r.size(), n);
+
+  DiagramGrid grid;
+  grid.azimuth = azimuth;
+  grid.density.resize(m * n, 0.0);
+  for (std::size_t i = 0; i < m; ++i) grid.phi.push_back(ref.phi[across[i]]);
+  for (std::size_t j = 0; j < n; ++j) grid.r.push_back(ref.r[along[j]]);
+  if (!(ref.floor > 0)) return grid;
+  for (std::size_t i = 0; i < m; ++i)
+    for (std::size_t j = 0; j < n; ++j) grid.at(i, j) = ref.at(across[i], along[j]);
+  if (azimuth == Azimuth::full)
+    for (std::size_t j = 0; j < n; ++j) grid.at(m - 1, j) = grid.at(0, j);
+  double pole = 0;
+  for (std::size_t i = 0; i < m; ++i) pole += grid.at(i, 0) / static_cast<double>(m);
+  for (std::size_t i = 0; i < m; ++i) grid.at(i, 0) = pole;
+  fit_densities(ref, positions(ref.phi, across), positions(ref.r, along), grid);
+  return grid;
+}
+
+}  // namespace gonio

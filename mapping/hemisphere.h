@@ -1,0 +1,50 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <glm/vec3.hpp>
+
+#include <gonio/mapping/concentric.h>
+
+namespace gonio {
+
+template <class T>
+using Vec3 = glm::vec<3, T, glm::defaultp>;
+
+/// Polar coordinates on the disk that the hemisphere lies flattened on: r = sqrt(1 - cos theta)
+/// (Havran et al. 2003, eq. 3; their eq. 6, "r = sqrt(1 - theta^2)", is a misprint), phi in
+/// [-pi, pi]. The solid angle element is 2 r dr dphi.
+template <class T>
+struct Polar {
+  T r, phi;
+};
+
+/// M_E, eqs. 2 and 3: disk to upper hemisphere. @param p r in [0, 1].
+/// @return a unit vector; relative error of each component at most 4 ulp, also next to the pole.
+template <class T>
+Vec3<T> polar_to_direction(Polar<T> p) noexcept {
+  const T sin_theta = p.r * std::sqrt(2 - p.r * p.r);  // sin^2 = (1 - cos)(1 + cos), no cancellation
+  return {sin_theta * std::cos(p.phi), sin_theta * std::sin(p.phi), (1 - p.r) * (1 + p.r)};
+}
+
+/// The inverse of polar_to_direction(). @param w a unit vector with w.z >= 0.
+/// r^2 is taken as sin^2 / (1 + cos): 1 - w.z would lose all digits next to the pole.
+template <class T>
+Polar<T> direction_to_polar(const Vec3<T>& w) noexcept {
+  const T r2 = (w.x * w.x + w.y * w.y) / (1 + w.z);
+  return {std::min(std::sqrt(r2), T(1)), std::atan2(w.y, w.x)};
+}
+
+/// The parallel theta as a radius on the disk; theta in [0, pi/2]. sqrt(1 - cos) as sqrt(2) sin(theta/2).
+template <class T>
+T theta_to_radius(T theta) noexcept {
+  return std::sqrt(T(2)) * std::sin(theta / 2);
+}
+
+/// The inverse of theta_to_radius(); r in [0, 1].
+template <class T>
+T radius_to_theta(T r) noexcept {
+  return 2 * std::asin(r / std::sqrt(T(2)));
+}
+
+}  // namespace gonio

@@ -1,0 +1,177 @@
+#include <gonio/mapping/stack.h>
+
+#include <cmath>
+#include <limits>
+
+#include <gonio/mapping/error.h>
+
+namespace gonio {
+namespace {
+
+/// A point of the disk as the two uniform numbers of a diagram. Half diagrams serve phi < 0 as the
+/// mirror image of phi > 0: the lower half of the disk folds onto the upper.
+template <class T>
+struct Folded {
+  T u;
+  bool mirrored;
+};
+
+template <class T>
+Folded<T> fold(T turn, bool half) noexcept {
+  if (!half) return {turn, false};
+  return turn <= T(0.5) ? Folded<T>{2 * turn, false} : Folded<T>{2 * (1 - turn), true};
+}
+
+template <class T>
+T unfold(T u, bool mirrored, bool half) noexcept {
+  if (!half) return u < 1 ? u : T(0);
+  const T turn = mirrored && u > 0 ? 1 - u / 2 : u / 2;
+  return turn < 1 ? turn : T(0);
+}
+
+template <class T>
+PolarSample<T> sample_one(const Diagram<T>& diagram, T u, T v) noexcept {
+  const auto m = diagram.meridian_at(u);
+  const auto p = diagram.parallel_at(m, v);
+  return {{p.r, m.phi}, p.pdf};
+}
+
+template <class T>
+PolarInverse<T> invert_one(const Diagram<T>& diagram, Polar<T> at) noexcept {
+  const auto m = diagram.meridian_through(at.phi);
+  return {diagram.u_of(m), diagram.v_of(m, at.r), diagram.pdf(m, at.r)};
+}
+
+template <class T>
+T pdf_one(const Diagram<T>& diagram, Polar<T> at) noexcept {
+  return diagram.pdf(diagram.meridian_through(at.phi), at.r);
+}
+
+}  // namespace
+
+const char* to_string(Interpolation interpolation) noexcept {
+  switch (interpolation) {
+    case Interpolation::nearest: return "nearest";
+    case Interpolation::mixture: return "mixture";
+    default: return "displacement";
+  }
+}
+
+template <class T>
+Stack<T>::Stack(const StackGrid& grid, Interpolation interpolation) : interpolation_(interpolation) {
+  if (grid.theta_i.empty() || grid.theta_i.size() != grid.diagrams.size())
+    throw Error("stack: found " + std::to_string(grid.theta_i.size()) + " incident angles and " +
+                std::to_string(grid.diagrams.size()) + " diagrams, expected as many, at least one");
+  for (std::size_t k = 0; k < grid.theta_i.size(); ++k) {
+    const double theta = grid.theta_i[k];
+    const bool ascending = k == 0 || static_cast<T>(theta) > theta_i_.back();
+    if (!(theta >= 0 && theta <= pi<double> / 2 + 1e-6) || !ascending)
+      throw Error("stack: theta_i[" + std::to_string(k) + "]: found " + std::to_string(theta) +
+                  ", expected ascending angles in 0 to pi/2");
+    if (grid.diagrams[k].azimuth != grid.diagrams.front().azimuth)
+      throw Error("stack: diagram " + std::to_string(k) +
+                  ": found another azimuth range than that of diagram 0, expected the same");
+    theta_i_.push_back(static_cast<T>(theta));
+    diagrams_.emplace_back(grid.diagrams[k]);
+  }
+  theta_i_.shrink_to_fit();
+  diagrams_.shrink_to_fit();
+}
+
+template <class T>
+typename Stack<T>::Place Stack<T>::place(T theta_i) const noexcept {
+  const int count = static_cast<int>(theta_i_.size());
+  if (count == 1) return {diagrams_[0], diagrams_[0], 0};
+  const int k = find_cell(theta_i_.data(), count, theta_i);
+  const Diagram<T>&first = diagrams_[k], &second = diagrams_[k + 1];
+  const T alpha =
+      std::clamp((theta_i - theta_i_[k]) / (theta_i_[k + 1] - theta_i_[k]), T(0), T(1));
+  if (alpha == 0) return {first, first, 0};
+  if (alpha == 1) return {second, second, 0};
+  if (interpolation_ == Interpolation::nearest)
+    return alpha < T(0.5) ? Place{first, first, 0} : Place{second, second, 0};
+  return {first, second, alpha};
+}
+
+template <class T>
+DirectionSample<T> Stack<T>::sample(T theta_i, T u, T v) const noexcept {
+  const DiskPoint<T> disk = square_to_disk(u, v);
+  const Folded<T> folded = fold(disk.turn, half());
+  const Place at = place(theta_i);
+  PolarSample<T> s;
+  if (at.alpha == 0) {
+    s = sample_one(at.first, folded.u, disk.r2);
+  } else if (interpolation_ == Interpolation::mixture) {
+    const T w0 = 1 - at.alpha;
+    const bool first = disk.r2 < w0;
+    const T rest = first ? disk.r2 / w0 : (disk.r2 - w0) / at.alpha;
+    s = sample_one(first ? at.first : at.second, folded.u, rest);
+    const Diagram<T>& other = first ? at.second : at.first;
+    s.pdf = (first ? w0 : at.alpha) * s.pdf + (first ? at.alpha : w0) * pdf_one(other, s.at);
+  } else {
+    s = Displacement<T>(at.first, at.second, at.alpha).sample(folded.u, disk.r2);
+  }
+  // The horizon itself has no cosine and is no direction of reflection.
+  s.at.r = std::min(s.at.r, 1 - std::numeric_limits<T>::epsilon() / 2);
+  if (folded.mirrored) s.at.phi = -s.at.phi;
+  return {polar_to_direction(s.at), s.pdf};
+}
+
+template <class T>
+T Stack<T>::pdf(T theta_i, const Vec3<T>& wo) const noexcept {
+  if (!(wo.z >= 0)) return 0;
+  Polar<T> at = direction_to_polar(wo);
+  at.phi = half() ? std::abs(at.phi) : at.phi < 0 ? at.phi + 2 * pi<T> : at.phi;
+  const Place p = place(theta_i);
+  if (p.alpha == 0) return pdf_one(p.first, at);
+  if (interpolation_ == Interpolation::mixture)
+    return (1 - p.alpha) * pdf_one(p.first, at) + p.alpha * pdf_one(p.second, at);
+  const auto inverse = Displacement<T>(p.first, p.second, p.alpha).invert(at);
+  return inverse ? inverse->pdf : T(0);
+}
+
+template <class T>
+std::optional<SquarePoint<T>> Stack<T>::invert(T theta_i, const Vec3<T>& wo) const noexcept {
+  if (!(wo.z >= 0)) return std::nullopt;
+  Polar<T> at = direction_to_polar(wo);
+  const bool mirrored = half() && at.phi < 0;
+  at.phi = half() ? std::abs(at.phi) : at.phi < 0 ? at.phi + 2 * pi<T> : at.phi;
+  const Place p = place(theta_i);
+  PolarInverse<T> inverse;
+  if (p.alpha == 0) {
+    inverse = invert_one(p.first, at);
+  } else if (interpolation_ == Interpolation::mixture) {
+    const T w0 = 1 - p.alpha;
+    const PolarInverse<T> a = invert_one(p.first, at), b = invert_one(p.second, at);
+    const bool first = w0 * a.pdf >= p.alpha * b.pdf;
+    inverse = first ? a : b;
+    inverse.v = first ? w0 * a.v : w0 + p.alpha * b.v;
+  } else {
+    const auto found = Displacement<T>(p.first, p.second, p.alpha).invert(at);
+    if (!found) return std::nullopt;
+    inverse = *found;
+  }
+  if (!(inverse.pdf > 0)) return std::nullopt;
+  return disk_to_square<T>({unfold(inverse.u, mirrored, half()), std::min(inverse.v, T(1))});
+}
+
+template <class T>
+std::size_t Stack<T>::bytes() const noexcept {
+  std::size_t sum = sizeof(*this) + theta_i_.capacity() * sizeof(T);
+  for (const Diagram<T>& d : diagrams_) sum += d.bytes();
+  return sum;
+}
+
+template <class T>
+StackGrid Stack<T>::grid() const {
+  StackGrid grid;
+  grid.theta_i.assign(theta_i_.begin(), theta_i_.end());
+  for (const Diagram<T>& d : diagrams_) grid.diagrams.push_back(d.grid());
+  return grid;
+}
+
+template class Stack<float>;
+template class Stack<double>;
+template class Stack<long double>;
+
+}  // namespace gonio

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <gonio/mapping/displacement.h>
+
+namespace gonio {
+
+/// How a stack samples between two of its diagrams.
+enum class Interpolation {
+  nearest,      ///< the diagram whose theta_i is closer; the pdf jumps half way between
+  mixture,      ///< one of the two at random, by the weights; two half-height lobes, not coherent
+  displacement  ///< the images of (u, v) interpolated: one lobe that moves; see Displacement
+};
+
+const char* to_string(Interpolation interpolation) noexcept;
+
+/// A stack of diagrams as data, in double: what a Stack is built from and a stack file holds.
+struct StackGrid {
+  std::vector<double> theta_i;        ///< K >= 1 incident angles [rad], ascending, in [0, pi/2]
+  std::vector<DiagramGrid> diagrams;  ///< one per angle, each with its own lines; all half or all full
+};
+
+template <class T>
+struct DirectionSample {
+  Vec3<T> wo;  ///< unit, wo.z > 0, phi relative to the azimuth of wi
+  T pdf;       ///< per solid angle [1/sr]; 0 where the density vanishes
+};
+
+/// Diagrams indexed by the incident angle, and the map between unit square and hemisphere for any
+/// angle: M_B of the concentric square, then M_C, M_D of the diagrams, interpolated, then M_E.
+///
+/// Angles outside the stack use its first or last diagram. Directions are in the frame of the
+/// diagram: x points along the azimuth of wi, so that the mirror direction is at phi = pi.
+///
+/// Thread safety: immutable; concurrent use is safe. No member but the constructor allocates.
+template <class T>
+class Stack {
+ public:
+  /// @throws Error if angles are not ascending in [0, pi/2], their number is not that of the
+  ///   diagrams, or a diagram is bad (see Diagram).
+  Stack(const StackGrid& grid, Interpolation interpolation);
+
+  /// The direction of (u, v) in [0, 1]^2 and its pdf.
+  DirectionSample<T> sample(T theta_i, T u, T v) const noexcept;
+
+  /// The pdf of `wo` [1/sr]; integrates to 1 over the hemisphere; 0 for wo.z < 0. For `displacement`
+  /// between diagrams this inverts the map (at most 2 max_root_steps evaluations, typically 8).
+  T pdf(T theta_i, const Vec3<T>& wo) const noexcept;
+
+  /// The (u, v) that sample() maps to `wo`; empty for wo.z < 0 and where the density vanishes. A
+  /// mixture has two pre-images: the one of the diagram with the larger share is returned.
+  std::optional<SquarePoint<T>> invert(T theta_i, const Vec3<T>& wo) const noexcept;
+
+  Interpolation interpolation() const noexcept { return interpolation_; }
+  const std::vector<T>& theta_i() const noexcept { return theta_i_; }
+  const std::vector<Diagram<T>>& diagrams() const noexcept { return diagrams_; }
+  std::size_t bytes() const noexcept;  ///< all memory held, this object included
+  StackGrid grid() const;              ///< as stored; a stack built from it equals this one bit by bit
+
+ private:
+  /// The diagrams that serve an angle: `alpha` of the way from `first` to `second`; alpha is 0 when
+  /// one diagram is enough.
+  struct Place {
+    const Diagram<T>&first, &second;
+    T alpha;
+  };
+  Place place(T theta_i) const noexcept;
+  bool half() const noexcept { return diagrams_.front().azimuth() == Azimuth::half; }
+
+  Interpolation interpolation_;
+  std::vector<T> theta_i_;
+  std::vector<Diagram<T>> diagrams_;
+};
+
+extern template class Stack<float>;
+extern template class Stack<double>;
+extern template class Stack<long double>;
+
+}  // namespace gonio
