@@ -10,7 +10,7 @@
 namespace gonio {
 namespace {
 
-constexpr const char* kDefaultMaterial =
+constexpr const char* default_material =
     "lambert:albedo=0.42/0.085/0.025+ggx:alpha=0.28,F0=0.03/0.022/0.016,F90=0.35+"
     "ggx:alpha=0.07,F0=0.035,F90=0.6";
 
@@ -123,7 +123,7 @@ void assign(Lobe& lobe, const std::string& name, std::string_view text) {
 LobeModel parse_model(std::string_view text) {
   LobeModel model;
   model.name = std::string(text);
-  const std::string_view source = lower(text) == "default" ? kDefaultMaterial : text;
+  const std::string_view source = lower(text) == "default" ? default_material : text;
 
   struct Setting {
     size_t lobe;

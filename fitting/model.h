@@ -30,7 +30,7 @@ struct Parameter {
 struct LobeInfo {
   const char* id;                ///< name in descriptions and files, for example "ggx"
   const char* source;            ///< paper and equation
-  std::vector<Parameter> shape;  ///< at most kMaxShape
+  std::vector<Parameter> shape;  ///< at most max_shape
 };
 
 const LobeInfo& lobe_info(LobeKind kind) noexcept;
@@ -45,7 +45,7 @@ const std::vector<Parameter>& color_parameters(LobeKind kind, Fresnel fresnel) n
 struct Lobe {
   LobeKind kind = LobeKind::lambert;
   Fresnel fresnel = Fresnel::schlick;
-  std::array<glm::dvec3, kMaxShape> shape{};
+  std::array<glm::dvec3, max_shape> shape{};
   std::array<glm::dvec3, 2> color{};
 
   /// The lobe with every parameter at its initial value.
@@ -116,7 +116,7 @@ glm::vec<3, S> LobeModel::eval(const glm::vec<3, S>& wi, const glm::vec<3, S>& w
     S value(0);
     for (int channel = 0; channel < 3; ++channel) {
       if (channel == 0 || !shared) {
-        const S shape[kMaxShape] = {S(lobe.shape[0][channel]), S(lobe.shape[1][channel])};
+        const S shape[max_shape] = {S(lobe.shape[0][channel]), S(lobe.shape[1][channel])};
         value =
             visit_lobe(lobe.kind, shape, [&](const auto& functor) { return functor.eval(angles); });
       }

@@ -17,7 +17,7 @@ class Noise {
   double operator()() {
     if (sigma_ == 0) return 1;
     const double u = 1 - uniform(), v = uniform();
-    const double normal = std::sqrt(-2 * std::log(u)) * std::cos(2 * kPi<double> * v);
+    const double normal = std::sqrt(-2 * std::log(u)) * std::cos(2 * pi<double> * v);
     return std::fmax(0.0, 1 + sigma_ * normal);
   }
 
@@ -30,7 +30,7 @@ class Noise {
 
 // Both directions must be higher than this to count as measured.
 double lowest_cosine(const SynthOptions& options) {
-  return std::fmax(0.0, std::cos(std::fmin(options.measured_to, kPi<double> / 2)));
+  return std::fmax(0.0, std::cos(std::fmin(options.measured_to, pi<double> / 2)));
 }
 
 }  // namespace
@@ -43,12 +43,12 @@ MerlFile synthesize_merl(const LobeModel& model, const SynthOptions& options) {
   Noise noise(options);
   std::size_t cell = 0;
   for (int h = 0; h < file.n_theta_h; ++h) {
-    const double u = (h + 0.5) / file.n_theta_h, theta_h = u * u * kPi<double> / 2;
+    const double u = (h + 0.5) / file.n_theta_h, theta_h = u * u * pi<double> / 2;
     const double sin_h = std::sin(theta_h), cos_h = std::cos(theta_h);
     for (int d = 0; d < file.n_theta_d; ++d) {
-      const double theta_d = (d + 0.5) / file.n_theta_d * kPi<double> / 2;
+      const double theta_d = (d + 0.5) / file.n_theta_d * pi<double> / 2;
       for (int p = 0; p < file.n_phi_d; ++p, ++cell) {
-        const double phi_d = (p + 0.5) / file.n_phi_d * kPi<double>;
+        const double phi_d = (p + 0.5) / file.n_phi_d * pi<double>;
         // Rusinkiewicz 1998: the difference vector, turned by theta_h about y.
         const glm::dvec3 diff(std::sin(theta_d) * std::cos(phi_d),
                               std::sin(theta_d) * std::sin(phi_d), std::cos(theta_d));
@@ -79,12 +79,12 @@ GridFile synthesize_grid(const LobeModel& model, int n_theta, int n_phi,
   const double lowest = lowest_cosine(options);
   Noise noise(options);
   for (int i = 0; i < n_theta; ++i) {
-    const double theta_i = (i + 0.5) / n_theta * kPi<double> / 2;
+    const double theta_i = (i + 0.5) / n_theta * pi<double> / 2;
     const glm::dvec3 wi(std::sin(theta_i), 0, std::cos(theta_i));
     for (int o = 0; o < n_theta; ++o) {
-      const double theta_o = (o + 0.5) / n_theta * kPi<double> / 2;
+      const double theta_o = (o + 0.5) / n_theta * pi<double> / 2;
       for (int p = 0; p < n_phi; ++p) {
-        const double phi = (p + 0.5) / n_phi * kPi<double>;
+        const double phi = (p + 0.5) / n_phi * pi<double>;
         const glm::dvec3 wo(std::sin(theta_o) * std::cos(phi), std::sin(theta_o) * std::sin(phi),
                             std::cos(theta_o));
         const bool measured = wi.z > lowest && wo.z > lowest;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gonio/mapping/concentric.h>
+
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
@@ -43,7 +45,7 @@ glm::vec<3, T> reflect_about(const glm::vec<3, T>& wi, const glm::vec<3, T>& h) 
 template <class T>
 glm::vec<3, T> polar(T cos_theta, T sin2_theta, T v) {
   const T sin_theta = std::sqrt(sin2_theta > T(0) ? sin2_theta : T(0));
-  const T phi = T(2) * kPi<T> * v;
+  const T phi = T(2) * pi<T> * v;
   return {sin_theta * std::cos(phi), sin_theta * std::sin(phi), cos_theta};
 }
 

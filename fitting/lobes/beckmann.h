@@ -41,7 +41,7 @@ struct Beckmann {
     using std::exp;
     const S cos2 = a.cos_h * a.cos_h;
     const T a2 = alpha * alpha;
-    return exp(T(-a.sin2_h / cos2) / a2) / (T(kPi<S> * cos2 * cos2) * a2);
+    return exp(T(-a.sin2_h / cos2) / a2) / (T(pi<S> * cos2 * cos2) * a2);
   }
   template <class S>
   T lambda(S cosine) const {
@@ -50,7 +50,7 @@ struct Beckmann {
     const S sine = std::sqrt(std::fmax(S(1e-12), S(1) - cosine * cosine));
     const T x = T(cosine / sine) / alpha;
     if (x > T(6)) return T(0);  // below 1e-17
-    return exp(-x * x) / (T(2 * std::sqrt(kPi<S>)) * x) - T(0.5) * erfc(x);
+    return exp(-x * x) / (T(2 * std::sqrt(pi<S>)) * x) - T(0.5) * erfc(x);
   }
 };
 

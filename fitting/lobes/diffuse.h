@@ -19,7 +19,7 @@ glm::vec<3, T> cosine_sample(T u, T v) {
 /// cos(theta_o) / pi, in 1/sr.
 template <class T>
 T cosine_pdf(T cos_o) {
-  return cos_o > T(0) ? cos_o / kPi<T> : T(0);
+  return cos_o > T(0) ? cos_o / pi<T> : T(0);
 }
 
 /// Lambert 1760: f_r = 1 / pi. Directional albedo: exactly 1.
@@ -27,7 +27,7 @@ template <class T>
 struct Lambert {
   template <class S>
   T eval(const Angles<S>&) const {
-    return T(1 / kPi<S>);
+    return T(1 / pi<S>);
   }
 
   std::optional<glm::vec<3, T>> sample(const glm::vec<3, T>&, T u, T v) const {
@@ -54,7 +54,7 @@ struct OrenNayar {
     const T weight_b = T(0.45) * s2 / (s2 + T(0.09));
     // max(0, cos(phi)) sin(alpha) tan(beta), alpha and beta the larger and the smaller angle.
     const S back = a.dot_xy > S(0) ? a.dot_xy / std::fmax(a.cos_i, a.cos_o) : S(0);
-    return (weight_a + weight_b * T(back)) * T(1 / kPi<S>);
+    return (weight_a + weight_b * T(back)) * T(1 / pi<S>);
   }
 
   std::optional<glm::vec<3, T>> sample(const glm::vec<3, T>&, T u, T v) const {
@@ -78,7 +78,7 @@ struct Burley {
   T eval(const Angles<S>& a) const {
     const T grazing = T(2 * a.cos_d * a.cos_d) * roughness - T(0.5);  // F_D90 - 1
     return (T(1) + grazing * T(fifth(1 - a.cos_i))) * (T(1) + grazing * T(fifth(1 - a.cos_o))) *
-           T(1 / kPi<S>);
+           T(1 / pi<S>);
   }
 
   std::optional<glm::vec<3, T>> sample(const glm::vec<3, T>&, T u, T v) const {

@@ -32,7 +32,7 @@ struct Ggx {
     const Vec t1 = length2 > T(0) ? Vec(-stretched.y, stretched.x, T(0)) / std::sqrt(length2)
                                   : Vec(T(1), T(0), T(0));
     const Vec t2 = glm::cross(stretched, t1);
-    const T r = std::sqrt(u), phi = T(2) * kPi<T> * v, s = T(0.5) * (T(1) + stretched.z);
+    const T r = std::sqrt(u), phi = T(2) * pi<T> * v, s = T(0.5) * (T(1) + stretched.z);
     const T p1 = r * std::cos(phi);
     const T p1_rest = std::sqrt(std::fmax(T(0), T(1) - p1 * p1));
     const T p2 = (T(1) - s) * p1_rest + s * r * std::sin(phi);
@@ -56,7 +56,7 @@ struct Ggx {
   T normal_density(const Angles<S>& a) const {
     const T a2 = alpha * alpha;
     const T d = a2 * T(a.cos_h * a.cos_h) + T(a.sin2_h);
-    return a2 / (T(kPi<S>) * d * d);
+    return a2 / (T(pi<S>) * d * d);
   }
   template <class S>
   static T root(const T& a2, S cosine) {

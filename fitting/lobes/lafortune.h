@@ -26,7 +26,7 @@ struct Lafortune {
     const T dot = T(-a.dot_xy) + lift * T(a.cos_i * a.cos_o);
     if (!(dot > T(0))) return T(0);
     const T base = lift > T(1) ? dot / lift : dot;
-    return (exponent + T(2)) / T(2 * kPi<S>) * exp(exponent * log(base));
+    return (exponent + T(2)) / T(2 * pi<S>) * exp(exponent * log(base));
   }
 
   /// A cosine-power lobe about V. Empty if wo is not above the horizon.
@@ -54,7 +54,7 @@ struct Lafortune {
     const T dot = T(-a.dot_xy) + lifted * T(a.cos_o);
     if (!(dot > T(0))) return T(0);
     const T length = sqrt(T(1 - a.cos_i * a.cos_i) + lifted * lifted);
-    return (exponent + T(1)) / T(2 * kPi<S>) * exp(exponent * log(dot / length));
+    return (exponent + T(1)) / T(2 * pi<S>) * exp(exponent * log(dot / length));
   }
 };
 

@@ -27,7 +27,7 @@ struct BlinnPhong {
   T eval(const Angles<S>& a) const {
     using std::exp;
     return (exponent + T(2)) * (exponent + T(4)) * exp(exponent * T(log_cos_h(a))) /
-           (T(8 * kPi<S>) * (exp(exponent * T(-0.5 * std::log(2.0))) + exponent));
+           (T(8 * pi<S>) * (exp(exponent * T(-0.5 * std::log(2.0))) + exponent));
   }
 
   /// Empty if wo is not above the horizon.
@@ -42,7 +42,7 @@ struct BlinnPhong {
   template <class S>
   T pdf(const Angles<S>& a) const {
     using std::exp;
-    return (exponent + T(1)) * exp(exponent * T(log_cos_h(a))) / T(8 * kPi<S> * a.cos_d);
+    return (exponent + T(1)) * exp(exponent * T(log_cos_h(a))) / T(8 * pi<S> * a.cos_d);
   }
 
   template <class S>

@@ -51,7 +51,7 @@ struct StudentT {
     const S cos2 = a.cos_h * a.cos_h;
     const T b = (gamma - T(1)) * alpha * alpha;
     return exp(-gamma * log(T(1) + T(a.sin2_h / cos2) / b)) /
-           (T(kPi<S> * cos2 * cos2) * alpha * alpha);
+           (T(pi<S> * cos2 * cos2) * alpha * alpha);
   }
 
   // The slope along one axis has density C (1 + x^2/b)^-q, b = (gamma-1) alpha^2, q = gamma - 1/2.
@@ -68,7 +68,7 @@ struct StudentT {
     const T b = (gamma - T(1)) * alpha * alpha;
     const T q = gamma - T(0.5);
     const T t0 = atan(T(c) / sqrt(b));
-    const T below = power_integral(T(0), t0, q), above = power_integral(t0, T(kPi<S> / 2), q);
+    const T below = power_integral(T(0), t0, q), above = power_integral(t0, T(pi<S> / 2), q);
     const T first = sqrt(b) * exp((T(1) - q) * log(T(1) + T(c * c) / b)) / (T(2 * c) * (q - T(1)));
     const T result = (first - above) / (T(2) * (below + above));
     return result > T(0) ? result : T(0);
@@ -79,15 +79,15 @@ struct StudentT {
     using std::cos;
     using std::exp;
     using std::log;
-    constexpr double kNode[4] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
+    constexpr double node[4] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
                                  0.9602898564975363};
-    constexpr double kWeight[4] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
+    constexpr double weight[4] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
                                    0.1012285362903763};
     const T middle = T(0.5) * (from + to), half = T(0.5) * (to - from), p = T(2) * q - T(2);
     T sum(0);
     for (int i = 0; i < 4; ++i) {
-      sum += T(kWeight[i]) * (exp(p * log(cos(middle - T(kNode[i]) * half))) +
-                              exp(p * log(cos(middle + T(kNode[i]) * half))));
+      sum += T(weight[i]) * (exp(p * log(cos(middle - T(node[i]) * half))) +
+                              exp(p * log(cos(middle + T(node[i]) * half))));
     }
     return sum * half;
   }

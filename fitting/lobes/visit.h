@@ -30,7 +30,7 @@ enum class LobeKind {
 constexpr bool is_specular(LobeKind kind) noexcept { return kind >= LobeKind::ggx; }
 
 /// The shape parameters of a lobe have at most this many members.
-inline constexpr int kMaxShape = 2;
+inline constexpr int max_shape = 2;
 
 /// Calls f with the lobe of that kind; `shape` holds its parameters in the order of lobe_info().
 template <class T, class F>

@@ -19,7 +19,7 @@ struct Ward {
   template <class S>
   T eval(const Angles<S>& a) const {
     const S sum_z = a.cos_i + a.cos_o;  // (h.n) before normalisation; h.h = 4 cos_d^2
-    return gauss(a) * T(4 * a.cos_d * a.cos_d / (kPi<S> * sum_z * sum_z * sum_z * sum_z));
+    return gauss(a) * T(4 * a.cos_d * a.cos_d / (pi<S> * sum_z * sum_z * sum_z * sum_z));
   }
 
   /// Half vectors by Ward 1992, eq. 6. Empty if wo is not above the horizon.
@@ -33,7 +33,7 @@ struct Ward {
   /// Walter 2005, "Notes on the Ward BRDF", eq. 9, in 1/sr.
   template <class S>
   T pdf(const Angles<S>& a) const {
-    return gauss(a) * T(1 / (4 * kPi<S> * a.cos_d * a.cos_h * a.cos_h * a.cos_h));
+    return gauss(a) * T(1 / (4 * pi<S> * a.cos_d * a.cos_h * a.cos_h * a.cos_h));
   }
 
  private:
