@@ -32,9 +32,6 @@ struct Angles {
   }
 };
 
-template <class S>
-inline constexpr S kPi = S(3.14159265358979323846L);
-
 /// wi mirrored about the unit half vector h (Walter et al. 2007, eq. 39).
 template <class T>
 glm::vec<3, T> reflect_about(const glm::vec<3, T>& wi, const glm::vec<3, T>& h) {

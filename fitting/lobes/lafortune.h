@@ -7,32 +7,32 @@
 
 namespace gonio {
 
-/// Lafortune et al. 1997, eq. 5 (generalised cosine lobe), isotropic: C_x = C_y = -1 and C_z =
-/// lift, so that the scale of C is not a second amplitude: K max(0, V . wo)^n with V = (-wi.x,
-/// -wi.y, lift wi.z) and K = (n+2) / (2 pi max(1, lift)^n). lift = 1 is Phong's lobe; lift < 1
-/// leans towards grazing.
+/// Lafortune et al. 1997, eq. 5 (generalised cosine lobe), isotropic: C_x = C_y = -spread and C_z =
+/// 1, so that the scale of C is not a second amplitude: (n+2) / (2 pi) max(0, V . wo)^n with V =
+/// (-spread wi.x, -spread wi.y, wi.z). spread = 1 is Phong's lobe; spread > 1 leans and grows
+/// towards grazing.
 ///
-/// Directional albedo: at most 1, and exactly 1 at normal incidence for lift >= 1 (the integral of
-/// a cosine lobe against cos_o is largest for a lobe along the normal).
+/// Directional albedo: exactly 1 at normal incidence; less elsewhere for spread <= 1 (the integral
+/// of a cosine lobe against cos_o is largest for a lobe along the normal); up to spread^n at
+/// grazing beyond.
 template <class T>
 struct Lafortune {
   T exponent;  ///< n >= 1
-  T lift;      ///< C_z / |C_x|, > 0
+  T spread;    ///< |C_x| / C_z, > 0
 
   template <class S>
   T eval(const Angles<S>& a) const {
     using std::exp;
     using std::log;
-    const T dot = T(-a.dot_xy) + lift * T(a.cos_i * a.cos_o);
+    const T dot = spread * T(-a.dot_xy) + T(a.cos_i * a.cos_o);
     if (!(dot > T(0))) return T(0);
-    const T base = lift > T(1) ? dot / lift : dot;
-    return (exponent + T(2)) / T(2 * pi<S>) * exp(exponent * log(base));
+    return (exponent + T(2)) / T(2 * pi<S>) * exp(exponent * log(dot));
   }
 
   /// A cosine-power lobe about V. Empty if wo is not above the horizon.
   std::optional<glm::vec<3, T>> sample(const glm::vec<3, T>& wi, T u, T v) const {
     using Vec = glm::vec<3, T>;
-    const Vec axis = glm::normalize(Vec(-wi.x, -wi.y, lift * wi.z));
+    const Vec axis = glm::normalize(Vec(-spread * wi.x, -spread * wi.y, wi.z));
     const T log_cos = std::log1p(-u) / (exponent + T(1));
     const Vec local = polar(std::exp(log_cos), -std::expm1(T(2) * log_cos), v);
     // A frame about the axis, which is on the upper side (Duff et al. 2017, listing 3, sign +).
@@ -50,10 +50,9 @@ struct Lafortune {
     using std::exp;
     using std::log;
     using std::sqrt;
-    const T lifted = lift * T(a.cos_i);
-    const T dot = T(-a.dot_xy) + lifted * T(a.cos_o);
+    const T dot = spread * T(-a.dot_xy) + T(a.cos_i * a.cos_o);
     if (!(dot > T(0))) return T(0);
-    const T length = sqrt(T(1 - a.cos_i * a.cos_i) + lifted * lifted);
+    const T length = sqrt(spread * spread * T(1 - a.cos_i * a.cos_i) + T(a.cos_i * a.cos_i));
     return (exponent + T(1)) / T(2 * pi<S>) * exp(exponent * log(dot / length));
   }
 };

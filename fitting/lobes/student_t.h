@@ -80,14 +80,14 @@ struct StudentT {
     using std::exp;
     using std::log;
     constexpr double node[4] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
-                                 0.9602898564975363};
+                                0.9602898564975363};
     constexpr double weight[4] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
-                                   0.1012285362903763};
+                                  0.1012285362903763};
     const T middle = T(0.5) * (from + to), half = T(0.5) * (to - from), p = T(2) * q - T(2);
     T sum(0);
     for (int i = 0; i < 4; ++i) {
       sum += T(weight[i]) * (exp(p * log(cos(middle - T(node[i]) * half))) +
-                              exp(p * log(cos(middle + T(node[i]) * half))));
+                             exp(p * log(cos(middle + T(node[i]) * half))));
     }
     return sum * half;
   }
