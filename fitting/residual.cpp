@@ -43,7 +43,7 @@ std::vector<FitSample> fit_samples(const BrdfFunction& f, const FitOptions& opti
     const double s = (h + 0.5) / options.theta_h, theta_h = s * s * pi<double> / 2;
     const double sin_h = std::sin(theta_h), cos_h = std::cos(theta_h);
     for (int d = 0; d < options.theta_d; ++d) {
-      const double theta_d = (d + 0.5) / options.theta_d * options.grazing_cutoff;
+      const double theta_d = (d + 0.5) / options.theta_d * pi<double> / 2;
       for (int p = 0; p < options.phi_d; ++p) {
         const double phi_d = (p + 0.5) / options.phi_d * pi<double>;
         const glm::dvec3 diff(std::sin(theta_d) * std::cos(phi_d),
