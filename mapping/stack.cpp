@@ -131,7 +131,7 @@ T Stack<T>::pdf(T theta_i, const Vec3<T>& wo) const noexcept {
 }
 
 template <class T>
-std::optional<SquarePoint<T>> Stack<T>::invert(T theta_i, const Vec3<T>& wo) const noexcept {
+std::optional<SquareInverse<T>> Stack<T>::invert(T theta_i, const Vec3<T>& wo) const noexcept {
   if (!(wo.z >= 0)) return std::nullopt;
   Polar<T> at = direction_to_polar(wo);
   const bool mirrored = half() && at.phi < 0;
@@ -146,13 +146,15 @@ std::optional<SquarePoint<T>> Stack<T>::invert(T theta_i, const Vec3<T>& wo) con
     const bool first = w0 * a.pdf >= p.alpha * b.pdf;
     inverse = first ? a : b;
     inverse.v = first ? w0 * a.v : w0 + p.alpha * b.v;
+    inverse.pdf = w0 * a.pdf + p.alpha * b.pdf;
   } else {
     const auto found = Displacement<T>(p.first, p.second, p.alpha).invert(at);
     if (!found) return std::nullopt;
     inverse = *found;
   }
   if (!(inverse.pdf > 0)) return std::nullopt;
-  return disk_to_square<T>({unfold(inverse.u, mirrored, half()), std::min(inverse.v, T(1))});
+  const DiskPoint<T> disk{unfold(inverse.u, mirrored, half()), std::min(inverse.v, T(1))};
+  return SquareInverse<T>{disk_to_square(disk), inverse.pdf};
 }
 
 template <class T>

@@ -29,6 +29,13 @@ struct DirectionSample {
   T pdf;       ///< per solid angle [1/sr]; 0 where the density vanishes
 };
 
+/// What inverting the map of a stack gives.
+template <class T>
+struct SquareInverse {
+  SquarePoint<T> at;  ///< the (u, v) that sample() maps to the direction
+  T pdf;              ///< of the direction, per solid angle [1/sr], > 0
+};
+
 /// Diagrams indexed by the incident angle, and the map between unit square and hemisphere for any
 /// angle: M_B of the concentric square, then M_C, M_D of the diagrams, interpolated, then M_E.
 ///
@@ -50,9 +57,9 @@ class Stack {
   /// between diagrams this inverts the map (at most 2 max_root_steps evaluations, typically 8).
   T pdf(T theta_i, const Vec3<T>& wo) const noexcept;
 
-  /// The (u, v) that sample() maps to `wo`; empty for wo.z < 0 and where the density vanishes. A
+  /// The (u, v) that sample() maps to `wo`, with the pdf; empty for wo.z < 0 and where the density vanishes. A
   /// mixture has two pre-images: the one of the diagram with the larger share is returned.
-  std::optional<SquarePoint<T>> invert(T theta_i, const Vec3<T>& wo) const noexcept;
+  std::optional<SquareInverse<T>> invert(T theta_i, const Vec3<T>& wo) const noexcept;
 
   Interpolation interpolation() const noexcept { return interpolation_; }
   const std::vector<T>& theta_i() const noexcept { return theta_i_; }

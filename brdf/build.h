@@ -1,0 +1,40 @@
+#pragma once
+
+#include <functional>
+
+#include <gonio/brdf/table.h>
+#include <gonio/mapping/stack.h>
+
+namespace gonio {
+
+/// The size of a stack: what ends its growth, whichever comes first.
+struct StackOptions {
+  int incident = 128;              ///< at most this many incident angles, >= 2
+  int meridians = 40;              ///< at most this many in a diagram, >= 2
+  int parallels = 40;              ///< at most this many in a diagram, >= 2
+  std::size_t bytes = 480 * 1024;  ///< at most about this much memory (a started batch is finished)
+  double tolerance = 0.003;        ///< relative variance that is good enough, at and between all angles
+};
+
+/// Called now and then with the share of the work that is done, in [0, 1]; from one thread at a time.
+using Progress = std::function<void(double)>;
+
+/// Share of a cosine lobe in every diagram: keeps pdf > 0 wherever the table may be > 0, also where
+/// a neighbouring incident angle or a line that lies between two cells saw nothing. Its price is a
+/// relative variance of at most this share.
+inline constexpr double cosine_share = 1e-3;
+
+/// The density that a diagram tabulates: g(wo) = L(f_r(wi, wo)) cos theta_o with L the Rec. 709
+/// luminance, as the mean over both signs of phi [1/sr].
+double transfer_density(const BrdfTable& table, double theta_i, Polar<double> at);
+
+/// Builds the diagrams of a table: each fitted to its incident angle (fit_diagram()), the angles
+/// placed where displacement between their neighbours fails, measured by the relative variance half
+/// way between them. Uses all cores; the result does not depend on their number.
+///
+/// A table that reflects nothing at an angle gets a cosine lobe there.
+/// @throws Error for sizes out of range.
+StackGrid build_stack(const BrdfTable& table, const StackOptions& options = {},
+                      const Progress& progress = {});
+
+}  // namespace gonio

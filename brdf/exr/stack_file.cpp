@@ -1,0 +1,222 @@
+#include <gonio/brdf/exr/stack_file.h>
+
+#include <ImfChannelList.h>
+#include <ImfFloatAttribute.h>
+#include <ImfFloatVectorAttribute.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputPart.h>
+#include <ImfIntAttribute.h>
+#include <ImfMultiPartInputFile.h>
+#include <ImfMultiPartOutputFile.h>
+#include <ImfOutputPart.h>
+#include <ImfPartType.h>
+#include <ImfStringAttribute.h>
+#include <ImfTestFile.h>
+
+#include <fstream>
+#include <vector>
+
+#include <gonio/brdf/atomic_file.h>
+#include <gonio/mapping/error.h>
+
+namespace gonio {
+namespace {
+
+constexpr int largest_side = 1 << 14;  // lines or cells a part may have: no real stack comes near
+
+[[noreturn]] void fail(const std::string& file, const std::string& field, const std::string& found,
+                       const std::string& expected) {
+  throw Error(file + ": " + field + ": found " + found + ", expected " + expected);
+}
+
+std::vector<float> to_float(const std::vector<double>& values) { return {values.begin(), values.end()}; }
+std::vector<double> to_double(const std::vector<float>& values) { return {values.begin(), values.end()}; }
+
+/// A part's pixels and what describes them.
+struct Part {
+  Imf::Header header;
+  std::vector<std::string> channels;
+  std::vector<float> pixels;  // channels interleaved
+};
+
+Part make_part(const std::string& name, int width, int height, std::vector<std::string> channels) {
+  Part part{Imf::Header(width, height), std::move(channels), {}};
+  part.header.setName(name);
+  part.header.setType(Imf::SCANLINEIMAGE);
+  part.header.compression() = Imf::ZIP_COMPRESSION;
+  for (const std::string& c : part.channels) part.header.channels().insert(c, Imf::Channel(Imf::FLOAT));
+  return part;
+}
+
+Imf::FrameBuffer frame_buffer(const std::vector<std::string>& channels, int width, float* pixels) {
+  Imf::FrameBuffer buffer;
+  const std::size_t stride = channels.size() * sizeof(float);
+  for (std::size_t c = 0; c < channels.size(); ++c)
+    buffer.insert(channels[c], Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(pixels + c), stride,
+                                          stride * static_cast<std::size_t>(width)));
+  return buffer;
+}
+
+template <class Attribute, class Value>
+Value attribute(const std::string& file, const Imf::Header& header, const char* name) {
+  const Attribute* found = header.findTypedAttribute<Attribute>(name);
+  if (!found)
+    fail(file, "part " + header.name() + ": attribute " + name, "none of that type", "one");
+  return found->value();
+}
+
+std::vector<float> read_pixels(const std::string& file, Imf::MultiPartInputFile& input, int k, int width,
+                               int height, const std::vector<std::string>& channels) {
+  const Imf::Header& header = input.header(k);
+  const auto& window = header.dataWindow();
+  // In 64 bits: a damaged window may span more than an int holds.
+  const long long found_width = 1LL + window.max.x - window.min.x, found_height = 1LL + window.max.y - window.min.y;
+  if (found_width != width || found_height != height || window.min.x != 0 || window.min.y != 0)
+    fail(file, "part " + header.name() + ": size",
+         std::to_string(found_width) + " x " + std::to_string(found_height),
+         std::to_string(width) + " x " + std::to_string(height) + " from 0, 0");
+  for (const std::string& c : channels) {
+    const Imf::Channel* channel = header.channels().findChannel(c);
+    if (!channel || channel->type != Imf::FLOAT)
+      fail(file, "part " + header.name() + ": channel " + c, "none of type FLOAT", "one");
+  }
+  std::vector<float> pixels(channels.size() * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  Imf::InputPart part(input, k);
+  part.setFrameBuffer(frame_buffer(channels, width, pixels.data()));
+  part.readPixels(0, height - 1);
+  return pixels;
+}
+
+int checked_size(const std::string& file, const std::string& field, std::size_t size) {
+  if (size < 2 || size > largest_side)
+    fail(file, field, std::to_string(size) + " values", "2 to " + std::to_string(largest_side));
+  return static_cast<int>(size);
+}
+
+StackFile load(const std::string& file) {
+  Imf::MultiPartInputFile input(file.c_str(), 1);
+  StackFile result;
+  const Imf::Header& first = input.header(0);
+  const int version = first.findTypedAttribute<Imf::IntAttribute>("gonio:format")
+                          ? attribute<Imf::IntAttribute, int>(file, first, "gonio:format")
+                          : 0;
+  if (version != stack_file_version)
+    fail(file, "attribute gonio:format", version ? std::to_string(version) : "none",
+         std::to_string(stack_file_version) + " (a stack file of this library)");
+  result.name = attribute<Imf::StringAttribute, std::string>(file, first, "gonio:name");
+  result.source = attribute<Imf::StringAttribute, std::string>(file, first, "gonio:source");
+  result.chart = attribute<Imf::StringAttribute, std::string>(file, first, "gonio:chart");
+  if (result.chart != "outgoing") fail(file, "attribute gonio:chart", result.chart, "outgoing");
+
+  for (int k = 0; k < input.parts(); ++k) {
+    const Imf::Header& header = input.header(k);
+    if (!input.partComplete(k)) fail(file, "part " + header.name(), "an incomplete part", "all its rows");
+    if (header.name() == "colour") {
+      const int angles = static_cast<int>(result.diagrams.theta_i.size());
+      const int side = header.dataWindow().max.x < largest_side ? header.dataWindow().max.x + 1 : 0;
+      if (side < 2 || angles == 0 || angles > largest_side)
+        fail(file, "part colour", "no cells, or no diagrams before it", "the last part, some cells wide");
+      const auto pixels = read_pixels(file, input, k, side, angles * (side / 2), {"R", "G", "B"});
+      std::vector<glm::vec3> values(pixels.size() / 3);
+      for (std::size_t i = 0; i < values.size(); ++i)
+        values[i] = {pixels[3 * i], pixels[3 * i + 1], pixels[3 * i + 2]};
+      result.colour = Colour(result.diagrams.theta_i.size(), side, std::move(values));
+      continue;
+    }
+    const std::string field = "part " + header.name() + ": ";
+    DiagramGrid grid;
+    grid.azimuth = Azimuth::half;
+    grid.phi = to_double(attribute<Imf::FloatVectorAttribute, std::vector<float>>(file, header, "gonio:phi"));
+    grid.r = to_double(attribute<Imf::FloatVectorAttribute, std::vector<float>>(file, header, "gonio:r"));
+    const int m = checked_size(file, field + "gonio:phi", grid.phi.size());
+    const int n = checked_size(file, field + "gonio:r", grid.r.size());
+    grid.density = to_double(read_pixels(file, input, k, n, m, {"Y"}));
+    result.diagrams.theta_i.push_back(attribute<Imf::FloatAttribute, float>(file, header, "gonio:theta_i"));
+    result.diagrams.diagrams.push_back(std::move(grid));
+  }
+  return result;
+}
+
+}  // namespace
+
+void save_stack(const std::filesystem::path& path, const StackFile& file) {
+  std::vector<Part> parts;
+  for (std::size_t k = 0; k < file.diagrams.theta_i.size(); ++k) {
+    const DiagramGrid& grid = file.diagrams.diagrams[k];
+    if (grid.azimuth != Azimuth::half)
+      fail(path.string(), "diagram " + std::to_string(k), "a full azimuth", "half, mirrored");
+    std::string number = std::to_string(k);
+    number.insert(0, number.size() < 3 ? 3 - number.size() : 0, '0');
+    Part part = make_part("diagram." + number, static_cast<int>(grid.r.size()), static_cast<int>(grid.phi.size()), {"Y"});
+    part.header.insert("gonio:theta_i", Imf::FloatAttribute(static_cast<float>(file.diagrams.theta_i[k])));
+    part.header.insert("gonio:phi", Imf::FloatVectorAttribute(to_float(grid.phi)));
+    part.header.insert("gonio:r", Imf::FloatVectorAttribute(to_float(grid.r)));
+    part.pixels = to_float(grid.density);
+    parts.push_back(std::move(part));
+  }
+  if (parts.empty()) fail(path.string(), "diagrams", "none", "at least one");
+  if (!file.colour.empty()) {
+    const int side = file.colour.side();
+    Part part = make_part("colour", side, static_cast<int>(parts.size()) * (side / 2), {"R", "G", "B"});
+    part.header.insert("gonio:units", Imf::StringAttribute("W = f_r cos(theta_o) / pdf, linear Rec. 709"));
+    for (const glm::vec3& w : file.colour.values()) part.pixels.insert(part.pixels.end(), {w.r, w.g, w.b});
+    parts.push_back(std::move(part));
+  }
+  Imf::Header& first = parts.front().header;
+  first.insert("gonio:format", Imf::IntAttribute(stack_file_version));
+  first.insert("gonio:version", Imf::StringAttribute(GONIO_VERSION));
+  first.insert("gonio:name", Imf::StringAttribute(file.name));
+  first.insert("gonio:source", Imf::StringAttribute(file.source));
+  first.insert("gonio:chart", Imf::StringAttribute(file.chart));
+  first.insert("gonio:units", Imf::StringAttribute("pdf per solid angle in 1/sr; angles in radians; r = sqrt(1 - cos theta)"));
+  first.insert("gonio:layout", Imf::StringAttribute("one part per incident angle: columns r, rows phi in 0..pi, mirrored"));
+
+  write_atomically(path, [&](const std::filesystem::path& temporary) {
+    try {
+      std::vector<Imf::Header> headers;
+      for (const Part& part : parts) headers.push_back(part.header);
+      Imf::MultiPartOutputFile output(temporary.c_str(), headers.data(), static_cast<int>(headers.size()), false, 1);
+      for (std::size_t k = 0; k < parts.size(); ++k) {
+        const auto& window = parts[k].header.dataWindow();
+        Imf::OutputPart out(output, static_cast<int>(k));
+        out.setFrameBuffer(frame_buffer(parts[k].channels, window.max.x + 1, parts[k].pixels.data()));
+        out.writePixels(window.max.y + 1);
+      }
+    } catch (const std::exception& e) {
+      throw Error(path.string() + ": cannot be written: " + e.what());
+    }
+  });
+}
+
+StackFile load_stack(const std::filesystem::path& path) {
+  if (!is_exr(path)) fail(path.string(), "content", "no OpenEXR file", "a stack file");
+  try {
+    StackFile file = load(path.string());
+    // What cannot be sampled is refused here, with the name of the file.
+    const Stack<float> usable(file.diagrams, Interpolation::displacement);
+    return file;
+  } catch (const Error& e) {
+    const std::string what = e.what();
+    throw Error(what.compare(0, path.string().size(), path.string()) == 0 ? what : path.string() + ": " + what);
+  } catch (const std::exception& e) {  // Iex exceptions among them
+    throw Error(path.string() + ": damaged OpenEXR file: " + e.what());
+  }
+}
+
+bool is_exr(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  char magic[4] = {};
+  if (std::filesystem::is_directory(path) || !stream)
+    throw Error(path.string() + ": cannot be read, expected a readable file");
+  stream.read(magic, sizeof(magic));
+  return stream.gcount() == sizeof(magic) && Imf::isImfMagic(magic);
+}
+
+Sampler load_sampler(const std::filesystem::path& path) {
+  StackFile file = load_stack(path);
+  if (file.colour.empty()) fail(path.string(), "part colour", "none", "one (a self-contained stack)");
+  return Sampler(file.diagrams, std::move(file.colour));
+}
+
+}  // namespace gonio

@@ -1,0 +1,149 @@
+#include <gonio/brdf/repair.h>
+#include <gonio/brdf/rgl.h>
+#include <gonio/mapping/error.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace gonio {
+namespace {
+
+constexpr float pi = 3.14159265358979323846f;
+
+// Elevation and azimuth of a direction that need not have unit length.
+float theta_of(const glm::vec3& w) noexcept {
+  return std::atan2(std::sqrt(w.x * w.x + w.y * w.y), w.z);
+}
+
+// The file's chart of directions: u_theta = sqrt(2 theta / pi), u_phi = (phi + pi) / (2 pi).
+float u_theta_of(float theta) noexcept { return std::sqrt(theta * (2.0f / pi)); }
+
+float bilinear(const RglFile::Grid& grid, float x, float y) noexcept {
+  const Lerp lx = lerp_clamped(x * static_cast<float>(grid.width - 1), grid.width);
+  const Lerp ly = lerp_clamped(y * static_cast<float>(grid.height - 1), grid.height);
+  const auto row = [&](int j) {
+    const float* values = grid.values.data() + j * grid.width;
+    return mix(values[lx.lo], values[lx.hi], lx.t);
+  };
+  return mix(row(ly.lo), row(ly.hi), ly.t);
+}
+
+}  // namespace
+
+struct RglTable::Normal {
+  float u_theta, u_phi;
+  float jacobian;  // solid angle of the normals per unit area of the chart
+};
+
+RglTable::RglTable(RglFile file, const CellPolicies& policies)
+    : theta_i_(std::move(file.theta_i)),
+      ndf_(std::move(file.ndf)),
+      sigma_(std::move(file.sigma)),
+      vndf_(file.vndf.slices, file.vndf.height, file.vndf.width, file.vndf.values),
+      luminance_(file.luminance.slices, file.luminance.height, file.luminance.width,
+                 file.luminance.values),
+      colour_height_(file.colour_height),
+      colour_width_(file.colour_width),
+      colour_(std::move(file.colour)),
+      jacobian_(file.jacobian),
+      n_wavelengths_(file.n_wavelengths) {
+  std::vector<CellKind> kinds;
+  kinds.reserve(colour_.size());
+  for (const glm::vec3& cell : colour_) kinds.push_back(kind_of(cell));
+  const auto n = theta_i_.size();
+  const auto height = static_cast<std::size_t>(colour_height_);
+  const auto width = static_cast<std::size_t>(colour_width_);
+  counts_ = repair_cells(
+      colour_, kinds, policies,
+      {{n * height, width, 1, false}, {n, height, width, false}, {1, n, height * width, false}});
+}
+
+Lerp RglTable::slice_at(float theta) const noexcept {
+  const int n = static_cast<int>(theta_i_.size());
+  int hi = 0;
+  while (hi < n && theta_i_[hi] <= theta) ++hi;
+  if (hi == 0) return {0, 0, 0.0f};
+  if (hi == n) return {n - 1, n - 1, 0.0f};
+  return {hi - 1, hi, (theta - theta_i_[hi - 1]) / (theta_i_[hi] - theta_i_[hi - 1])};
+}
+
+RglTable::Normal RglTable::half_vector(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
+  const glm::vec3 m = wi + wo;
+  // Azimuth relative to wi; at the pole, where wi has none, relative to +x.
+  const bool pole = wi.x == 0.0f && wi.y == 0.0f;
+  const float ix = pole ? 1.0f : wi.x, iy = pole ? 0.0f : wi.y;
+  const float phi = std::atan2(ix * m.y - iy * m.x, ix * m.x + iy * m.y);
+  const float m_xy = std::sqrt(m.x * m.x + m.y * m.y);
+  const float u_theta = u_theta_of(std::atan2(m_xy, m.z));
+  const float u_phi = phi * (0.5f / pi) + 0.5f;
+  const float sine = m_xy / glm::length(m);
+  return {u_theta, u_phi, std::max(2.0f * pi * pi * u_theta * sine, 1e-6f)};
+}
+
+glm::vec3 RglTable::colour_at(const Lerp& slice, float x, float y) const noexcept {
+  const Lerp lx = lerp_clamped(x * static_cast<float>(colour_width_ - 1), colour_width_);
+  const Lerp ly = lerp_clamped(y * static_cast<float>(colour_height_ - 1), colour_height_);
+  const auto row = [&](int s, int j) {
+    const glm::vec3* cells =
+        colour_.data() + (static_cast<std::ptrdiff_t>(s) * colour_height_ + j) * colour_width_;
+    return mix(cells[lx.lo], cells[lx.hi], lx.t);
+  };
+  return mix(mix(row(slice.lo, ly.lo), row(slice.lo, ly.hi), ly.t),
+             mix(row(slice.hi, ly.lo), row(slice.hi, ly.hi), ly.t), slice.t);
+}
+
+glm::vec3 RglTable::value_at(const Normal& normal, float theta_i, const Lerp& slice, float x,
+                             float y) const noexcept {
+  const glm::vec3 colour = colour_at(slice, x, y);
+  if (!jacobian_) return colour;
+  // The projected area hardly depends on the azimuth of an isotropic file; phi_i = 0 is u_phi =
+  // 0.5.
+  const float sigma = bilinear(sigma_, u_theta_of(theta_i), 0.5f);
+  if (!(sigma > 0.0f)) return glm::vec3(0.0f);
+  return colour * (bilinear(ndf_, normal.u_theta, normal.u_phi) / (4.0f * sigma));
+}
+
+glm::vec3 RglTable::eval_cosine(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
+  const float theta_i = theta_of(wi);
+  const Lerp slice = slice_at(theta_i);
+  const Normal normal = half_vector(wi, wo);
+  const Warp2d::Point place = vndf_.invert(slice, normal.u_theta, normal.u_phi);
+  return value_at(normal, theta_i, slice, place.x, place.y);
+}
+
+glm::vec3 RglTable::eval(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
+  return eval_cosine(wi, wo) / std::max(wo.z, min_cosine);
+}
+
+float RglTable::pdf(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
+  const Lerp slice = slice_at(theta_of(wi));
+  const Normal normal = half_vector(wi, wo);
+  const Warp2d::Point place = vndf_.invert(slice, normal.u_theta, normal.u_phi);
+  const float cosine = 0.5f * glm::length(wi + wo);  // wi . m
+  return luminance_.eval(slice, place.x, place.y) * place.density /
+         (normal.jacobian * 4.0f * cosine);
+}
+
+std::optional<RglTable::Sample> RglTable::sample(const glm::vec3& wi, float u1,
+                                                 float u2) const noexcept {
+  const float theta_i = theta_of(wi);
+  const Lerp slice = slice_at(theta_i);
+  const Warp2d::Point place = luminance_.sample(slice, u2, u1);
+  const Warp2d::Point chart = vndf_.sample(slice, place.x, place.y);
+
+  const float theta_m = 0.5f * pi * chart.x * chart.x;
+  const float phi_m = (2.0f * chart.y - 1.0f) * pi + std::atan2(wi.y, wi.x);
+  const float sine = std::sin(theta_m);
+  const glm::vec3 m(sine * std::cos(phi_m), sine * std::sin(phi_m), std::cos(theta_m));
+  const float cosine = glm::dot(wi, m);
+  const glm::vec3 wo = glm::normalize(2.0f * cosine * m - wi);
+  if (!(cosine > 0.0f && wo.z > 0.0f)) return std::nullopt;
+
+  const Normal normal{chart.x, chart.y, std::max(2.0f * pi * pi * chart.x * sine, 1e-6f)};
+  const float density = place.density * chart.density / (normal.jacobian * 4.0f * cosine);
+  return Sample{wo, density,
+                value_at(normal, theta_i, slice, place.x, place.y) / std::max(wo.z, min_cosine)};
+}
+
+}  // namespace gonio

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
+
+#include <gonio/brdf/build.h>
+#include <gonio/brdf/colour.h>
+
+namespace gonio {
+
+/// A sampled direction of reflection.
+struct BsdfSample {
+  glm::vec3 wo;      ///< unit, wo.z > 0
+  float pdf;         ///< per solid angle [1/sr], > 0
+  glm::vec3 weight;  ///< f_r cos theta_o / pdf per RGB channel: what the path's throughput is multiplied by
+};
+
+/// What a renderer holds of a measured material: importance sampling, its pdf, and f_r.
+///
+/// Frame: local, the surface normal is +z; wi and wo are unit vectors that point away from the
+/// surface; wi is the known direction, wo the sampled one. One-sided: for wi.z <= 0 or wo.z <= 0
+/// there is no sample, pdf() and eval() are 0. A two-sided material flips both directions first.
+///
+/// Either table-backed (f_r comes from the table, exactly; the sampler shares its ownership), or
+/// self-contained (f_r is what the stack's densities and its Colour say; then sample, pdf and eval
+/// agree to rounding and no table is needed).
+///
+/// Thread safety: immutable; every const member may be called concurrently. No member but the
+/// constructors allocates or locks.
+class Sampler {
+ public:
+  /// Builds a stack for the table. Takes about a second; see StackOptions for the size.
+  explicit Sampler(std::shared_ptr<const BrdfTable> table, const StackOptions& options = {},
+                   const Progress& progress = {});
+
+  /// Table-backed, with diagrams that exist already (a stack file's, say).
+  Sampler(std::shared_ptr<const BrdfTable> table, const StackGrid& diagrams,
+          Interpolation interpolation = Interpolation::displacement);
+
+  /// Self-contained. @throws Error if `colour` does not have one layer per diagram.
+  Sampler(const StackGrid& diagrams, Colour colour);
+
+  /// Draws wo for `wi` from two uniform numbers in [0, 1). Empty for wi.z <= 0, and for a draw that
+  /// falls on a direction without density (a measure-zero event).
+  std::optional<BsdfSample> sample(const glm::vec3& wi, const glm::vec2& u) const noexcept;
+
+  /// The density with which sample() draws wo [1/sr]. Differs from BsdfSample::pdf by rounding only
+  /// (relative 1e-3 at most where the density is within 1e-6 of its peak).
+  float pdf(const glm::vec3& wi, const glm::vec3& wo) const noexcept;
+
+  /// f_r(wi, wo) per RGB channel [1/sr], without the cosine.
+  glm::vec3 eval(const glm::vec3& wi, const glm::vec3& wo) const noexcept;
+
+  const Stack<float>& stack() const noexcept { return stack_; }
+  const Colour& colour() const noexcept { return colour_; }
+  bool self_contained() const noexcept { return !table_; }
+  /// All memory held, the shared table apart.
+  std::size_t bytes() const noexcept { return sizeof(*this) - sizeof(stack_) + stack_.bytes() + colour_.bytes(); }
+
+ private:
+  Stack<float> stack_;
+  std::shared_ptr<const BrdfTable> table_;  // null: self-contained
+  Colour colour_;                           // empty: table-backed
+};
+
+}  // namespace gonio

@@ -1,0 +1,31 @@
+// Samples the table named by the argument and checks each draw against pdf() and eval().
+#include <gonio/brdf/sampler.h>
+#include <gonio/brdf/table.h>
+
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <utility>
+
+int main(int, char** argv) {
+  gonio::BrdfTable table = gonio::load_table(argv[1]);
+  const gonio::Sampler sampler(std::make_shared<const gonio::BrdfTable>(std::move(table)));
+  const glm::vec3 wi(0.6f, 0.0f, 0.8f);
+  constexpr int n = 16;
+  double albedo = 0;
+  for (int i = 0; i < n * n; ++i) {
+    const auto s = sampler.sample(wi, {(i % n + 0.5f) / n, (i / n + 0.5f) / n});
+    if (!s) continue;
+    const glm::vec3 weight = sampler.eval(wi, s->wo) * s->wo.z / s->pdf;
+    const float difference = std::abs(weight.y - s->weight.y) / s->weight.y;
+    const float pdf_difference = std::abs(sampler.pdf(wi, s->wo) / s->pdf - 1);
+    if (!(difference < 1e-3f && pdf_difference < 1e-2f)) {
+      std::fprintf(stderr, "draw %d: weight differs by %g, pdf by %g\n", i, difference,
+                   pdf_difference);
+      return 1;
+    }
+    albedo += s->weight.y / (n * n);
+  }
+  std::printf("green albedo %g\n", albedo);
+  return albedo > 0.01 && albedo < 1.05 ? 0 : 1;
+}
