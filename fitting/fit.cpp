@@ -1,17 +1,15 @@
 #include <ceres/ceres.h>
+#include <gonio/brdf/parallel.h>
 #include <gonio/fitting/fit.h>
 #include <gonio/fitting/linear_start.h>
 #include <gonio/fitting/residual.h>
 #include <gonio/mapping/error.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
 #include <limits>
 #include <memory>
 #include <random>
-#include <thread>
 
 namespace gonio {
 namespace {
@@ -32,30 +30,9 @@ void check(const FitOptions& o) {
   require(o.robust_width >= 0, "robust_width", o.robust_width, "0 or more");
   require(o.starts >= 1, "starts", o.starts, "1 or more");
   require(o.max_iterations >= 1, "max_iterations", o.max_iterations, "1 or more");
-  require(o.threads >= 1, "threads", o.threads, "1 or more");
   require(o.theta_h >= 4, "theta_h", o.theta_h, "4 or more");
   require(o.theta_d >= 2, "theta_d", o.theta_d, "2 or more");
   require(o.phi_d >= 2, "phi_d", o.phi_d, "2 or more");
-}
-
-// Runs work(0) ... work(n - 1) on some threads.
-template <class F>
-void parallel_for(int n, int threads, const F& work) {
-  std::atomic<int> next{0};
-  std::exception_ptr error;
-  std::atomic_flag failed = ATOMIC_FLAG_INIT;
-  const auto run = [&] {
-    try {
-      for (int i; (i = next++) < n;) work(i);
-    } catch (...) {
-      if (!failed.test_and_set()) error = std::current_exception();
-    }
-  };
-  std::vector<std::thread> others;
-  for (int t = 1; t < std::min(threads, n); ++t) others.emplace_back(run);
-  run();
-  for (std::thread& t : others) t.join();
-  if (error) std::rethrow_exception(error);
 }
 
 struct Attempt {
@@ -87,8 +64,7 @@ class Fitter {
       }
     }
     const ParameterLayout layout(form, options_.separate_channels);
-    parallel_for(static_cast<int>(attempts.size()), options_.threads,
-                 [&](int i) { refine(layout, attempts[i]); });
+    parallel_for(attempts.size(), [&](size_t i) { refine(layout, attempts[i]); });
     return summarise(layout, attempts);
   }
 
@@ -134,7 +110,7 @@ class Fitter {
       }
     }
     const ParameterLayout layout(form, options_.separate_channels);
-    parallel_for(static_cast<int>(candidates.size()), options_.threads, [&](int i) {
+    parallel_for(candidates.size(), [&](size_t i) {
       detail::solve_colors(samples_, options_.compression, candidates[i].model);
       candidates[i].initial_cost = cost(layout, candidates[i].model);
     });

@@ -44,7 +44,6 @@ struct FitOptions {
   int starts = 4;  ///< local optimisations per number of lobes, besides the one from one lobe less
   std::uint32_t seed = 1;   ///< of the random starts; the same seed gives the same fit
   int max_iterations = 80;  ///< of each local optimisation; most need 10 to 40
-  int threads = 2;          ///< starts run in parallel; the result does not depend on it
 
   /// Samples of theta_h in [0, 90] degrees (spaced as the square), theta_d in [0, 90] and phi_d in
   /// [0, 180]; two thirds of them have both directions inside the cut-off. 90, 18: a MERL table is
