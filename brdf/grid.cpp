@@ -1,6 +1,7 @@
 #include <gonio/brdf/atomic_file.h>
 #include <gonio/brdf/bytes.h>
 #include <gonio/brdf/grid.h>
+#include <gonio/brdf/fast_atan2.h>
 #include <gonio/brdf/interpolate.h>
 #include <gonio/brdf/repair.h>
 #include <gonio/mapping/error.h>
@@ -195,19 +196,19 @@ glm::vec3 GridTable::eval(const glm::vec3& wi, const glm::vec3& wo) const noexce
     return lerp_clamped(angle * (static_cast<float>(n) / range) - 0.5f, n);
   };
   const auto theta = [](const glm::vec3& w) {
-    return std::atan2(std::sqrt(w.x * w.x + w.y * w.y), w.z);
+    return fast_atan2(std::sqrt(w.x * w.x + w.y * w.y), w.z);
   };
-  const float phi = std::abs(std::atan2(wi.x * wo.y - wi.y * wo.x, wi.x * wo.x + wi.y * wo.y));
+  const float phi = std::abs(fast_atan2(wi.x * wo.y - wi.y * wo.x, wi.x * wo.x + wi.y * wo.y));
   const Lerp i = position(theta(wi), pi / 2, n_theta_in_);
   const Lerp o = position(theta(wo), pi / 2, n_theta_out_);
   const Lerp p = position(phi, pi, n_phi_);
   const auto row = [&](int in, int out) {
     const glm::vec3* cells =
         cells_.data() + (static_cast<std::ptrdiff_t>(in) * n_theta_out_ + out) * n_phi_;
-    return mix(cells[p.lo], cells[p.hi], p.t);
+    return lerp(cells[p.lo], cells[p.hi], p.t);
   };
-  return mix(mix(row(i.lo, o.lo), row(i.lo, o.hi), o.t), mix(row(i.hi, o.lo), row(i.hi, o.hi), o.t),
-             i.t);
+  return lerp(lerp(row(i.lo, o.lo), row(i.lo, o.hi), o.t),
+              lerp(row(i.hi, o.lo), row(i.hi, o.hi), o.t), i.t);
 }
 
 }  // namespace gonio

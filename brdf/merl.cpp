@@ -1,5 +1,6 @@
 #include <gonio/brdf/atomic_file.h>
 #include <gonio/brdf/bytes.h>
+#include <gonio/brdf/fast_atan2.h>
 #include <gonio/brdf/interpolate.h>
 #include <gonio/brdf/merl.h>
 #include <gonio/brdf/repair.h>
@@ -81,7 +82,7 @@ HalfDifference half_difference(const glm::vec3& wi, const glm::vec3& wo) noexcep
   const float h_length = glm::length(h);
   float hx = h.x, hy = h.y;
   float h_xy = std::sqrt(hx * hx + hy * hy);
-  const float theta_h = std::atan2(h_xy, h.z);
+  const float theta_h = fast_atan2(h_xy, h.z);
   if (h_xy > 0.0f) {
     hx /= h_xy;
     hy /= h_xy;
@@ -92,8 +93,8 @@ HalfDifference half_difference(const glm::vec3& wi, const glm::vec3& wo) noexcep
   // e against the tangent (rising theta_h) and the bitangent of h, both times |h|.
   const float along_tangent = h.z * (hx * e.x + hy * e.y) - h_xy * e.z;
   const float along_bitangent = h_length * (hx * e.y - hy * e.x);
-  return {theta_h, std::atan2(glm::length(e), h_length),
-          std::atan2(along_bitangent, along_tangent)};
+  return {theta_h, fast_atan2(glm::length(e), h_length),
+          fast_atan2(along_bitangent, along_tangent)};
 }
 
 void directions_from_half_difference(double theta_h, double theta_d, double phi_d, glm::vec3& wi,
@@ -149,10 +150,10 @@ glm::vec3 MerlTable::eval(const glm::vec3& wi, const glm::vec3& wo) const noexce
 
   const auto row = [&](int ih, int id) {
     const glm::vec3* cells = cells_.data() + (ih * MerlFile::n_theta_d + id) * n_phi_d_;
-    return mix(cells[p.lo], cells[p.hi], p.t);
+    return lerp(cells[p.lo], cells[p.hi], p.t);
   };
-  return mix(mix(row(h.lo, d.lo), row(h.lo, d.hi), d.t), mix(row(h.hi, d.lo), row(h.hi, d.hi), d.t),
-             h.t);
+  return lerp(lerp(row(h.lo, d.lo), row(h.lo, d.hi), d.t),
+              lerp(row(h.hi, d.lo), row(h.hi, d.hi), d.t), h.t);
 }
 
 }  // namespace gonio

@@ -1,9 +1,11 @@
+#include <gonio/brdf/fast_atan2.h>
 #include <gonio/brdf/repair.h>
 #include <gonio/brdf/rgl.h>
 #include <gonio/mapping/error.h>
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 namespace gonio {
@@ -13,7 +15,7 @@ constexpr float pi = 3.14159265358979323846f;
 
 // Elevation and azimuth of a direction that need not have unit length.
 float theta_of(const glm::vec3& w) noexcept {
-  return std::atan2(std::sqrt(w.x * w.x + w.y * w.y), w.z);
+  return fast_atan2(std::sqrt(w.x * w.x + w.y * w.y), w.z);
 }
 
 // The file's chart of directions: u_theta = sqrt(2 theta / pi), u_phi = (phi + pi) / (2 pi).
@@ -24,9 +26,9 @@ float bilinear(const RglFile::Grid& grid, float x, float y) noexcept {
   const Lerp ly = lerp_clamped(y * static_cast<float>(grid.height - 1), grid.height);
   const auto row = [&](int j) {
     const float* values = grid.values.data() + j * grid.width;
-    return mix(values[lx.lo], values[lx.hi], lx.t);
+    return lerp(values[lx.lo], values[lx.hi], lx.t);
   };
-  return mix(row(ly.lo), row(ly.hi), ly.t);
+  return lerp(row(ly.lo), row(ly.hi), ly.t);
 }
 
 }  // namespace
@@ -51,12 +53,20 @@ RglTable::RglTable(RglFile file, const CellPolicies& policies)
   std::vector<CellKind> kinds;
   kinds.reserve(colour_.size());
   for (const glm::vec3& cell : colour_) kinds.push_back(kind_of(cell));
+  const std::vector<glm::vec3> measured = colour_;
   const auto n = theta_i_.size();
   const auto height = static_cast<std::size_t>(colour_height_);
   const auto width = static_cast<std::size_t>(colour_width_);
   counts_ = repair_cells(
       colour_, kinds, policies,
       {{n * height, width, 1, false}, {n, height, width, false}, {1, n, height * width, false}});
+  // Interpolation between a positive and a negative node needs both; value_at() clamps what comes
+  // out.
+  if (policies.negative == CellPolicy::zero) {
+    for (std::size_t i = 0; i < colour_.size(); ++i) {
+      if (kinds[i] == CellKind::negative) colour_[i] = measured[i];
+    }
+  }
 }
 
 Lerp RglTable::slice_at(float theta) const noexcept {
@@ -73,9 +83,9 @@ RglTable::Normal RglTable::half_vector(const glm::vec3& wi, const glm::vec3& wo)
   // Azimuth relative to wi; at the pole, where wi has none, relative to +x.
   const bool pole = wi.x == 0.0f && wi.y == 0.0f;
   const float ix = pole ? 1.0f : wi.x, iy = pole ? 0.0f : wi.y;
-  const float phi = std::atan2(ix * m.y - iy * m.x, ix * m.x + iy * m.y);
+  const float phi = fast_atan2(ix * m.y - iy * m.x, ix * m.x + iy * m.y);
   const float m_xy = std::sqrt(m.x * m.x + m.y * m.y);
-  const float u_theta = u_theta_of(std::atan2(m_xy, m.z));
+  const float u_theta = u_theta_of(fast_atan2(m_xy, m.z));
   const float u_phi = phi * (0.5f / pi) + 0.5f;
   const float sine = m_xy / glm::length(m);
   return {u_theta, u_phi, std::max(2.0f * pi * pi * u_theta * sine, 1e-6f)};
@@ -87,15 +97,15 @@ glm::vec3 RglTable::colour_at(const Lerp& slice, float x, float y) const noexcep
   const auto row = [&](int s, int j) {
     const glm::vec3* cells =
         colour_.data() + (static_cast<std::ptrdiff_t>(s) * colour_height_ + j) * colour_width_;
-    return mix(cells[lx.lo], cells[lx.hi], lx.t);
+    return lerp(cells[lx.lo], cells[lx.hi], lx.t);
   };
-  return mix(mix(row(slice.lo, ly.lo), row(slice.lo, ly.hi), ly.t),
-             mix(row(slice.hi, ly.lo), row(slice.hi, ly.hi), ly.t), slice.t);
+  return lerp(lerp(row(slice.lo, ly.lo), row(slice.lo, ly.hi), ly.t),
+              lerp(row(slice.hi, ly.lo), row(slice.hi, ly.hi), ly.t), slice.t);
 }
 
 glm::vec3 RglTable::value_at(const Normal& normal, float theta_i, const Lerp& slice, float x,
                              float y) const noexcept {
-  const glm::vec3 colour = colour_at(slice, x, y);
+  const glm::vec3 colour = glm::max(colour_at(slice, x, y), 0.0f);
   if (!jacobian_) return colour;
   // The projected area hardly depends on the azimuth of an isotropic file; phi_i = 0 is u_phi =
   // 0.5.
@@ -133,7 +143,7 @@ std::optional<RglTable::Sample> RglTable::sample(const glm::vec3& wi, float u1,
   const Warp2d::Point chart = vndf_.sample(slice, place.x, place.y);
 
   const float theta_m = 0.5f * pi * chart.x * chart.x;
-  const float phi_m = (2.0f * chart.y - 1.0f) * pi + std::atan2(wi.y, wi.x);
+  const float phi_m = (2.0f * chart.y - 1.0f) * pi + fast_atan2(wi.y, wi.x);
   const float sine = std::sin(theta_m);
   const glm::vec3 m(sine * std::cos(phi_m), sine * std::sin(phi_m), std::cos(theta_m));
   const float cosine = glm::dot(wi, m);

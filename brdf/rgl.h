@@ -45,8 +45,9 @@ RglFile parse_rgl(std::string bytes, std::vector<Problem>& problems);
 /// An RGL material ready for evaluation, with its own sampling chain.
 ///
 /// The stored colour stands for f_r * cos(theta_o). Colour cells with a negative channel are
-/// measurement noise; they are repaired as CellPolicies::negative says. `fill` takes the nearest
-/// valid cell along theta, else phi, else theta_i.
+/// measurement noise about 0: under CellPolicy::zero they take part in the interpolation, as in the
+/// authors' own loader, and the result is clamped to 0. `fill` takes the nearest valid cell along
+/// theta, else phi, else theta_i.
 class RglTable {
  public:
   /// eval() divides by cos(theta_o), but never by less than this (89.94 degrees): the measured

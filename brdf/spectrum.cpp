@@ -48,14 +48,15 @@ std::vector<glm::vec3> rec709_weights(const std::vector<float>& wavelengths) {
         std::upper_bound(wavelengths.begin(), wavelengths.end(), static_cast<float>(nm));
     if (above == wavelengths.begin()) continue;
     const auto k = static_cast<std::size_t>(above - wavelengths.begin());
-    if (above == wavelengths.end() && nm > wavelengths.back()) continue;
+    if (above == wavelengths.end() && static_cast<float>(nm) > wavelengths.back()) continue;
     const glm::dvec3 rgb = illuminant(nm) * rec709(xyz(nm));
     sum += rgb;
     if (above == wavelengths.end()) {
       weights[k - 1] += rgb;
       continue;
     }
-    const double t = (nm - wavelengths[k - 1]) / (wavelengths[k] - wavelengths[k - 1]);
+    const double before = wavelengths[k - 1];
+    const double t = (nm - before) / (wavelengths[k] - before);
     weights[k - 1] += (1.0 - t) * rgb;
     weights[k] += t * rgb;
   }

@@ -89,21 +89,21 @@ Warp2d::Warp2d(int n_slices, int height, int width, const std::vector<float>& de
 Warp2d::Point Warp2d::sample(const Lerp& slice, float u, float v) const noexcept {
   const float* marginal_lo = marginal_.data() + static_cast<std::ptrdiff_t>(slice.lo) * height_;
   const float* marginal_hi = marginal_.data() + static_cast<std::ptrdiff_t>(slice.hi) * height_;
-  const auto marginal = [&](int y) { return mix(marginal_lo[y], marginal_hi[y], slice.t); };
+  const auto marginal = [&](int y) { return lerp(marginal_lo[y], marginal_hi[y], slice.t); };
   const int iy = find_interval(height_, v, marginal);
 
   const float* lo = row(conditional_, slice.lo, iy);
   const float* hi = row(conditional_, slice.hi, iy);
   const int last = width_ - 1;
-  const float mass_0 = mix(lo[last], hi[last], slice.t);
-  const float mass_1 = mix(lo[width_ + last], hi[width_ + last], slice.t);
+  const float mass_0 = lerp(lo[last], hi[last], slice.t);
+  const float mass_1 = lerp(lo[width_ + last], hi[width_ + last], slice.t);
   const float ty =
       invert_linear(mass_0, mass_1, (v - marginal(iy)) * static_cast<float>(height_ - 1));
 
   const auto blend = [&](const float* a, const float* b, int x) {
-    return mix(mix(a[x], a[width_ + x], ty), mix(b[x], b[width_ + x], ty), slice.t);
+    return lerp(lerp(a[x], a[width_ + x], ty), lerp(b[x], b[width_ + x], ty), slice.t);
   };
-  const float target = u * mix(mass_0, mass_1, ty);
+  const float target = u * lerp(mass_0, mass_1, ty);
   const auto conditional = [&](int x) { return blend(lo, hi, x); };
   const int ix = find_interval(width_, target, conditional);
 
@@ -112,7 +112,7 @@ Warp2d::Point Warp2d::sample(const Lerp& slice, float u, float v) const noexcept
   const float d0 = blend(density_lo, density_hi, ix), d1 = blend(density_lo, density_hi, ix + 1);
   const float tx = invert_linear(d0, d1, (target - conditional(ix)) * static_cast<float>(last));
   return {(static_cast<float>(ix) + tx) / static_cast<float>(last),
-          (static_cast<float>(iy) + ty) / static_cast<float>(height_ - 1), mix(d0, d1, tx)};
+          (static_cast<float>(iy) + ty) / static_cast<float>(height_ - 1), lerp(d0, d1, tx)};
 }
 
 Warp2d::Point Warp2d::invert(const Lerp& slice, float x, float y) const noexcept {
@@ -121,7 +121,7 @@ Warp2d::Point Warp2d::invert(const Lerp& slice, float x, float y) const noexcept
   const float* hi = row(conditional_, slice.hi, cy.i);
   const int last = width_ - 1;
   const auto blend = [&](const float* a, const float* b, int i) {
-    return mix(mix(a[i], a[width_ + i], cy.t), mix(b[i], b[width_ + i], cy.t), slice.t);
+    return lerp(lerp(a[i], a[width_ + i], cy.t), lerp(b[i], b[width_ + i], cy.t), slice.t);
   };
   const float* density_lo = row(density_, slice.lo, cy.i);
   const float* density_hi = row(density_, slice.hi, cy.i);
@@ -131,24 +131,24 @@ Warp2d::Point Warp2d::invert(const Lerp& slice, float x, float y) const noexcept
   const float below =
       blend(lo, hi, cx.i) + integrate_linear(d0, d1, cx.t) / static_cast<float>(last);
 
-  const float mass_0 = mix(lo[last], hi[last], slice.t);
-  const float mass_1 = mix(lo[width_ + last], hi[width_ + last], slice.t);
+  const float mass_0 = lerp(lo[last], hi[last], slice.t);
+  const float mass_1 = lerp(lo[width_ + last], hi[width_ + last], slice.t);
   const auto marginal = [&](int s) {
     return marginal_[static_cast<std::size_t>(s) * height_ + cy.i];
   };
-  const float v = mix(marginal(slice.lo), marginal(slice.hi), slice.t) +
+  const float v = lerp(marginal(slice.lo), marginal(slice.hi), slice.t) +
                   integrate_linear(mass_0, mass_1, cy.t) / static_cast<float>(height_ - 1);
   // A line without mass is never sampled; any u would do.
-  return {mass > 0.0f ? std::min(below / mass, 1.0f) : x, std::min(v, 1.0f), mix(d0, d1, cx.t)};
+  return {mass > 0.0f ? std::min(below / mass, 1.0f) : x, std::min(v, 1.0f), lerp(d0, d1, cx.t)};
 }
 
 float Warp2d::eval(const Lerp& slice, float x, float y) const noexcept {
   const Cell cx = locate(x, width_), cy = locate(y, height_);
   const auto at = [&](int s) {
     const float* cell = row(density_, s, cy.i) + cx.i;
-    return mix(mix(cell[0], cell[1], cx.t), mix(cell[width_], cell[width_ + 1], cx.t), cy.t);
+    return lerp(lerp(cell[0], cell[1], cx.t), lerp(cell[width_], cell[width_ + 1], cx.t), cy.t);
   };
-  return mix(at(slice.lo), at(slice.hi), slice.t);
+  return lerp(at(slice.lo), at(slice.hi), slice.t);
 }
 
 }  // namespace gonio
