@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <string>
+#include <tuple>
 #include <vector>
 
 namespace gonio {
@@ -23,6 +25,14 @@ void add_report(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("report", "Measure how well materials are sampled, by every method");
   verb->add_option("IN", options->inputs, "Tables (MERL, RGL, MBSDF) or stack files")->required();
   verb->add_option("-o,--output", options->directory, "Folder for report.json and report.md")->required();
+  verb->add_option_function<std::string>(
+          "--grid",
+          [options](const std::string& text) {
+            std::tie(options->report.stack.meridians, options->report.stack.parallels) = parse_grid("--grid", text);
+          },
+          "At most M meridians and N parallels in a diagram")
+      ->type_name("MxN")
+      ->default_str(std::to_string(options->report.stack.meridians) + "x" + std::to_string(options->report.stack.parallels));
   add_stack_options(*verb, options->report.stack);
   add_cell_policies(*verb, options->report.policies);
   verb->footer(
