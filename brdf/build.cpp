@@ -78,7 +78,7 @@ class Growth {
 
   bool out_of_bytes() const { return out_of_bytes_; }
 
-  /// The largest estimate of relvar half way between two angles.
+  /// The largest estimate of relvar between two angles.
   double worst() const {
     double worst = 0;
     for (const auto& [angle, error] : error_) worst = std::max(worst, error);
@@ -113,13 +113,19 @@ class Growth {
     std::vector<double> unknown;
     for (auto it = built_.begin(); std::next(it) != built_.end(); ++it)
       if (!error_.count(it->first)) unknown.push_back(it->first);
-    std::vector<double> estimate(unknown.size(), 0.0);
-    parallel_for(unknown.size(), [&](std::size_t k) {
-      const auto a = built_.find(unknown[k]);
+    constexpr double probes[] = {0.25, 0.5, 0.75};
+    constexpr std::size_t count = std::size(probes);
+    std::vector<double> estimate(unknown.size() * count, 0.0);
+    parallel_for(estimate.size(), [&](std::size_t k) {
+      const auto a = built_.find(unknown[k / count]);
       const auto b = std::next(a);
-      estimate[k] = interpolation_relvar(table_, (a->first + b->first) / 2, a->second, b->second, 0.5);
+      const double alpha = probes[k % count];
+      estimate[k] = interpolation_relvar(table_, (1 - alpha) * a->first + alpha * b->first, a->second, b->second, alpha);
     });
-    for (std::size_t k = 0; k < unknown.size(); ++k) error_[unknown[k]] = estimate[k];
+    for (std::size_t k = 0; k < unknown.size(); ++k) {
+      const auto worst = std::max_element(estimate.begin() + k * count, estimate.begin() + (k + 1) * count);
+      error_[unknown[k]] = *worst;
+    }
   }
 
   /// Splits the intervals with the largest error, a fixed few at a time, so that the outcome is the
