@@ -6,7 +6,7 @@
 #include <gonio/tools/options.h>
 #include <gonio/tools/progress.h>
 
-#include <CLI/CLI.hpp>
+#include <CLI/App.hpp>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -128,9 +128,10 @@ void add_convert(CLI::App& app) {
                        std::to_string(stack.meridians) + "x" + std::to_string(stack.parallels) +
                        "]; .mbsdf: M thetas and N phis [90x180]")
       ->type_name("MxN");
-  verb->add_option("--bytes", stack.bytes,
-                   ".exr: at most this much memory for the diagrams, such as 1MiB")
-      ->transform(CLI::AsSizeValue(true))
+  verb->add_option_function<std::string>(
+          "--bytes",
+          [&stack](const std::string& text) { stack.bytes = parse_bytes("--bytes", text); },
+          ".exr: at most this much memory for the diagrams (once there are seven), such as 1MiB")
       ->type_name("SIZE")
       ->default_str(std::to_string(stack.bytes / 1024) + "KiB");
   verb->add_option("--tolerance", stack.tolerance, ".exr: relative variance that is good enough")
