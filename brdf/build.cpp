@@ -181,6 +181,7 @@ double transfer_density(const BrdfTable& table, double theta_i, Polar<double> at
   const glm::vec3 wi(static_cast<float>(std::sin(theta_i)), 0, static_cast<float>(std::cos(theta_i)));
   const glm::vec3 wo(polar_to_direction(at));
   const double left = luminance(table.eval(wi, wo));
+  if (std::holds_alternative<GridTable>(table.data())) return left * wo.z;  // mirrored as it is
   const double right = luminance(table.eval(wi, {wo.x, -wo.y, wo.z}));
   return (left + right) / 2 * wo.z;
 }
@@ -191,11 +192,11 @@ StackGrid build_stack(const BrdfTable& table, const StackOptions& options, const
   if (!(options.tolerance > 0))
     throw Error("stack: tolerance: found " + std::to_string(options.tolerance) + ", expected more than 0");
   // When the memory does not suffice for the tolerance, diagrams of that quality leave too few of
-  // them: coarser ones at more angles may do better. The tolerance doubles as long as they do.
+  // them: coarser ones at more angles may do better. The tolerance grows as long as they do.
   StackOptions attempt = options;
   std::optional<StackGrid> best;
   double best_error = std::numeric_limits<double>::infinity();
-  for (bool improved = true; improved; attempt.tolerance *= 2) {
+  for (bool improved = true; improved; attempt.tolerance *= 3) {
     Growth growth(table, attempt, progress);
     improved = growth.worst() < best_error && growth.out_of_bytes();
     if (growth.worst() < best_error) {
