@@ -11,7 +11,7 @@
 
 #include <gonio/brdf/parallel.h>
 #include <gonio/mapping/error.h>
-#include <gonio/mapping/fit.h>
+#include <gonio/mapping/diagram_fit.h>
 
 namespace gonio {
 namespace {
@@ -22,15 +22,16 @@ constexpr double largest_angle = 89.5 * degree;
 constexpr double smallest_gap = 0.1 * degree;
 
 DiagramGrid build_diagram(const BrdfTable& table, double theta_i, const StackOptions& options) {
-  DiagramGrid grid = fit_diagram(
-      [&](Polar<double> at) { return transfer_density(table, theta_i, at); }, Azimuth::half,
-      {options.meridians, options.parallels, options.tolerance / 2});
-  const bool black = std::all_of(grid.density.begin(), grid.density.end(), [](double d) { return d == 0; });
-  if (!black) grid = Diagram<double>(grid).grid();
-  const double share = black ? 1 : cosine_share;
+  const FitLimits limits{options.meridians, options.parallels, options.tolerance / 2};
+  DiagramGrid grid = fit_diagram([&](Polar<double> at) { return transfer_density(table, theta_i, at); },
+                                 Azimuth::half, limits);
+  const auto cosine = [](Polar<double> at) { return (1 - at.r * at.r) / pi<double>; };
+  if (std::all_of(grid.density.begin(), grid.density.end(), [](double d) { return d == 0; }))
+    return fit_diagram(cosine, Azimuth::half, limits);
+  grid = Diagram<double>(grid).grid();
   for (std::size_t i = 0; i < grid.phi.size(); ++i)
     for (std::size_t j = 0; j < grid.r.size(); ++j)
-      grid.at(i, j) = (1 - share) * grid.at(i, j) + share * (1 - grid.r[j] * grid.r[j]) / pi<double>;
+      grid.at(i, j) = (1 - cosine_share) * grid.at(i, j) + cosine_share * cosine({grid.r[j], grid.phi[i]});
   return grid;
 }
 
@@ -77,7 +78,7 @@ class Growth {
 
   bool out_of_bytes() const { return out_of_bytes_; }
 
-  /// The largest estimate of relvar half way between two angles.
+  /// The largest estimate of relvar between two angles.
   double worst() const {
     double worst = 0;
     for (const auto& [angle, error] : error_) worst = std::max(worst, error);
@@ -112,13 +113,19 @@ class Growth {
     std::vector<double> unknown;
     for (auto it = built_.begin(); std::next(it) != built_.end(); ++it)
       if (!error_.count(it->first)) unknown.push_back(it->first);
-    std::vector<double> estimate(unknown.size(), 0.0);
-    parallel_for(unknown.size(), [&](std::size_t k) {
-      const auto a = built_.find(unknown[k]);
+    constexpr double probes[] = {0.25, 0.5, 0.75};
+    constexpr std::size_t count = std::size(probes);
+    std::vector<double> estimate(unknown.size() * count, 0.0);
+    parallel_for(estimate.size(), [&](std::size_t k) {
+      const auto a = built_.find(unknown[k / count]);
       const auto b = std::next(a);
-      estimate[k] = interpolation_relvar(table_, (a->first + b->first) / 2, a->second, b->second, 0.5);
+      const double alpha = probes[k % count];
+      estimate[k] = interpolation_relvar(table_, (1 - alpha) * a->first + alpha * b->first, a->second, b->second, alpha);
     });
-    for (std::size_t k = 0; k < unknown.size(); ++k) error_[unknown[k]] = estimate[k];
+    for (std::size_t k = 0; k < unknown.size(); ++k) {
+      const auto worst = std::max_element(estimate.begin() + k * count, estimate.begin() + (k + 1) * count);
+      error_[unknown[k]] = *worst;
+    }
   }
 
   /// Splits the intervals with the largest error, a fixed few at a time, so that the outcome is the
@@ -174,6 +181,7 @@ double transfer_density(const BrdfTable& table, double theta_i, Polar<double> at
   const glm::vec3 wi(static_cast<float>(std::sin(theta_i)), 0, static_cast<float>(std::cos(theta_i)));
   const glm::vec3 wo(polar_to_direction(at));
   const double left = luminance(table.eval(wi, wo));
+  if (std::holds_alternative<GridTable>(table.data())) return left * wo.z;  // mirrored as it is
   const double right = luminance(table.eval(wi, {wo.x, -wo.y, wo.z}));
   return (left + right) / 2 * wo.z;
 }
@@ -184,11 +192,11 @@ StackGrid build_stack(const BrdfTable& table, const StackOptions& options, const
   if (!(options.tolerance > 0))
     throw Error("stack: tolerance: found " + std::to_string(options.tolerance) + ", expected more than 0");
   // When the memory does not suffice for the tolerance, diagrams of that quality leave too few of
-  // them: coarser ones at more angles may do better. The tolerance doubles as long as they do.
+  // them: coarser ones at more angles may do better. The tolerance grows as long as they do.
   StackOptions attempt = options;
   std::optional<StackGrid> best;
   double best_error = std::numeric_limits<double>::infinity();
-  for (bool improved = true; improved; attempt.tolerance *= 2) {
+  for (bool improved = true; improved; attempt.tolerance *= 3) {
     Growth growth(table, attempt, progress);
     improved = growth.worst() < best_error && growth.out_of_bytes();
     if (growth.worst() < best_error) {

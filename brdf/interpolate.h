@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <glm/vec3.hpp>
 
@@ -14,10 +15,9 @@ struct Lerp {
 /// Neighbours of position x on nodes 0 ... n-1, clamped to the ends. NaN gives node 0, so that a
 /// broken direction never becomes a broken index.
 inline Lerp lerp_clamped(float x, int n) noexcept {
-  if (!(x > 0.0f)) return {0, 0, 0.0f};
-  if (x >= static_cast<float>(n - 1)) return {n - 1, n - 1, 0.0f};
-  const int lo = static_cast<int>(x);
-  return {lo, lo + 1, x - static_cast<float>(lo)};
+  const float clamped = std::min(std::max(0.0f, x), static_cast<float>(n - 1));
+  const int lo = static_cast<int>(clamped);
+  return {lo, std::min(lo + 1, n - 1), clamped - static_cast<float>(lo)};
 }
 
 /// Neighbours of position x in [-1, n] on n nodes that repeat with period n. NaN gives node 0.

@@ -1,5 +1,6 @@
 #include <gonio/brdf/atomic_file.h>
 #include <gonio/brdf/bytes.h>
+#include <gonio/brdf/fast_atan2.h>
 #include <gonio/brdf/interpolate.h>
 #include <gonio/brdf/merl.h>
 #include <gonio/brdf/repair.h>
@@ -81,7 +82,7 @@ HalfDifference half_difference(const glm::vec3& wi, const glm::vec3& wo) noexcep
   const float h_length = glm::length(h);
   float hx = h.x, hy = h.y;
   float h_xy = std::sqrt(hx * hx + hy * hy);
-  const float theta_h = std::atan2(h_xy, h.z);
+  const float theta_h = fast_atan2(h_xy, h.z);
   if (h_xy > 0.0f) {
     hx /= h_xy;
     hy /= h_xy;
@@ -92,8 +93,8 @@ HalfDifference half_difference(const glm::vec3& wi, const glm::vec3& wo) noexcep
   // e against the tangent (rising theta_h) and the bitangent of h, both times |h|.
   const float along_tangent = h.z * (hx * e.x + hy * e.y) - h_xy * e.z;
   const float along_bitangent = h_length * (hx * e.y - hy * e.x);
-  return {theta_h, std::atan2(glm::length(e), h_length),
-          std::atan2(along_bitangent, along_tangent)};
+  return {theta_h, fast_atan2(glm::length(e), h_length),
+          fast_atan2(along_bitangent, along_tangent)};
 }
 
 void directions_from_half_difference(double theta_h, double theta_d, double phi_d, glm::vec3& wi,

@@ -1,3 +1,4 @@
+#include <gonio/brdf/fast_atan2.h>
 #include <gonio/brdf/repair.h>
 #include <gonio/brdf/rgl.h>
 #include <gonio/mapping/error.h>
@@ -14,7 +15,7 @@ constexpr float pi = 3.14159265358979323846f;
 
 // Elevation and azimuth of a direction that need not have unit length.
 float theta_of(const glm::vec3& w) noexcept {
-  return std::atan2(std::sqrt(w.x * w.x + w.y * w.y), w.z);
+  return fast_atan2(std::sqrt(w.x * w.x + w.y * w.y), w.z);
 }
 
 // The file's chart of directions: u_theta = sqrt(2 theta / pi), u_phi = (phi + pi) / (2 pi).
@@ -82,9 +83,9 @@ RglTable::Normal RglTable::half_vector(const glm::vec3& wi, const glm::vec3& wo)
   // Azimuth relative to wi; at the pole, where wi has none, relative to +x.
   const bool pole = wi.x == 0.0f && wi.y == 0.0f;
   const float ix = pole ? 1.0f : wi.x, iy = pole ? 0.0f : wi.y;
-  const float phi = std::atan2(ix * m.y - iy * m.x, ix * m.x + iy * m.y);
+  const float phi = fast_atan2(ix * m.y - iy * m.x, ix * m.x + iy * m.y);
   const float m_xy = std::sqrt(m.x * m.x + m.y * m.y);
-  const float u_theta = u_theta_of(std::atan2(m_xy, m.z));
+  const float u_theta = u_theta_of(fast_atan2(m_xy, m.z));
   const float u_phi = phi * (0.5f / pi) + 0.5f;
   const float sine = m_xy / glm::length(m);
   return {u_theta, u_phi, std::max(2.0f * pi * pi * u_theta * sine, 1e-6f)};
@@ -142,7 +143,7 @@ std::optional<RglTable::Sample> RglTable::sample(const glm::vec3& wi, float u1,
   const Warp2d::Point chart = vndf_.sample(slice, place.x, place.y);
 
   const float theta_m = 0.5f * pi * chart.x * chart.x;
-  const float phi_m = (2.0f * chart.y - 1.0f) * pi + std::atan2(wi.y, wi.x);
+  const float phi_m = (2.0f * chart.y - 1.0f) * pi + fast_atan2(wi.y, wi.x);
   const float sine = std::sin(theta_m);
   const glm::vec3 m(sine * std::cos(phi_m), sine * std::sin(phi_m), std::cos(theta_m));
   const float cosine = glm::dot(wi, m);
