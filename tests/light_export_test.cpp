@@ -337,7 +337,7 @@ TEST(LightExport, PolarDiagramShowsWhatItSays) {
   Luminaire odd = light;
   odd.name = "<Gl\xFChlampe & \"Co\">";
   const std::string escaped = polar_svg(odd);
-  EXPECT_NE(escaped.find("&lt;Gl&#183;hlampe &amp; &quot;Co&quot;&gt;"), std::string::npos);
+  EXPECT_NE(escaped.find("&lt;Gl\xC3\xBChlampe &amp; &quot;Co&quot;&gt;"), std::string::npos);
   klm.planes.clear();
   EXPECT_THROW(polar_svg(light, klm), Error);
 }

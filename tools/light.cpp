@@ -202,7 +202,8 @@ void convert(const CLI::App& verb, const Options& o) {
     });
     return;
   }
-  const std::filesystem::path picture = std::filesystem::path(o.out).replace_extension(".exr");
+  const std::filesystem::path picture = std::filesystem::path(o.out) +=
+      extension == ".pbrt" ? ".exr" : "";
   write_atomically(picture, [&](const std::filesystem::path& temporary) {
     if (!image)
       save_light(temporary, light);
@@ -328,7 +329,7 @@ void add_light(CLI::App& app) {
       add("convert",
           "To IES (.ies), EULUMDAT (.ldt), EXR (.exr) or a pbrt-v4 light with its image (.pbrt)");
   one_to_one(
-      verb, "File to write; its extension is its format. A .pbrt has its image beside it, as .exr");
+      verb, "File to write; its extension is its format. A .pbrt has its image beside it: OUT.exr");
   verb->add_option(
           "--layout", o->layout,
           ".exr: diagram (lossless, read by gonio), octahedral (equal-area) or latlong images")

@@ -76,13 +76,6 @@ LightFrame ies_frame(double zero, bool clockwise) {
   return frame;
 }
 
-std::string decoded(std::string text) {
-  // Labels are shown and written on; control characters would break what they are put into.
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) < 0x20) c = ' ';
-  return text;
-}
-
 }  // namespace
 
 Luminaire to_luminaire(const IesFile& file, const std::string& name, const LightOptions& options,
@@ -91,12 +84,12 @@ Luminaire to_luminaire(const IesFile& file, const std::string& name, const Light
   static constexpr const char* type_names[] = {"C", "B", "A"};
   light.format = (file.standard.empty() ? std::string("IES LM-63-1986") : "IES " + file.standard) +
                  ", type " + type_names[static_cast<int>(file.type) - 1];
-  light.manufacturer = decoded(file.keyword("MANUFAC"));
-  light.name = decoded(file.keyword("LUMINAIRE"));
-  light.number = decoded(file.keyword("LUMCAT"));
-  light.lamp = decoded(file.keyword("LAMP"));
+  light.manufacturer = to_utf8(file.keyword("MANUFAC"));
+  light.name = to_utf8(file.keyword("LUMINAIRE"));
+  light.number = to_utf8(file.keyword("LUMCAT"));
+  light.lamp = to_utf8(file.keyword("LAMP"));
   if (const std::string unit = file.keyword("_INTENSITYUNITS"); !unit.empty())
-    light.unit = decoded(unit);
+    light.unit = to_utf8(unit);
   light.watts = std::max(file.watts, 0.0);
   light.absolute = file.lumens_per_lamp < 0;
   if (file.lumens_per_lamp > 0 && file.lamps > 0)
@@ -169,16 +162,16 @@ Luminaire to_luminaire(const EulumdatFile& file, const std::string& name,
                        const LightOptions& options, Deviations& deviations) {
   Luminaire light;
   light.format = "EULUMDAT";
-  light.manufacturer = decoded(file.company);
-  light.name = decoded(file.name);
-  light.number = decoded(file.number);
+  light.manufacturer = to_utf8(file.company);
+  light.name = to_utf8(file.name);
+  light.number = to_utf8(file.number);
   double lumens = 1000;  // cd/klm stay what they are if nothing is stated
   if (!file.lamp_sets.empty()) {
     if (options.lamp_set >= file.lamp_sets.size())
       throw Error(name + ": lamp set " + std::to_string(options.lamp_set) + ": found " +
                   std::to_string(file.lamp_sets.size()) + " sets, numbered from 0");
     const EulumdatFile::LampSet& set = file.lamp_sets[options.lamp_set];
-    light.lamp = decoded(set.type);
+    light.lamp = to_utf8(set.type);
     light.watts = std::max(set.watts, 0.0);
     light.absolute = set.lamps < 0;
     if (set.lumens > 0) {
@@ -271,7 +264,7 @@ IesFile to_ies(const Luminaire& light, const LightOptions& options) {
   file.standard = "IESNA:LM-63-2002";
   const auto label = [&](const char* key, const std::string& value) {
     file.labels.push_back("[" + std::string(key) + "] " +
-                          (value.empty() ? "unknown" : value.substr(0, 120)));
+                          (value.empty() ? "unknown" : shortened(value, 120)));
   };
   label("TEST", "");
   label("TESTLAB", "");
@@ -301,9 +294,9 @@ EulumdatFile to_eulumdat(const Luminaire& light) {
   const LightDiagram diagram =
       unfold(folded, LightFrame{}, "EULUMDAT", none);  // as a reader will see it
   EulumdatFile file;
-  file.company = light.manufacturer.substr(0, 78);
-  file.name = light.name.substr(0, 78);
-  file.number = light.number.substr(0, 78);
+  file.company = shortened(light.manufacturer, 78);
+  file.name = shortened(light.name, 78);
+  file.number = shortened(light.number, 78);
   file.type = symmetry == LightSymmetry::rotational ? 1 : light.size.y > 2 * light.size.x ? 2 : 3;
   static constexpr LightSymmetry order[] = {LightSymmetry::none, LightSymmetry::rotational,
                                             LightSymmetry::c0_c180, LightSymmetry::c90_c270,
@@ -317,7 +310,7 @@ EulumdatFile to_eulumdat(const Luminaire& light) {
 
   const double total = flux(diagram);
   EulumdatFile::LampSet set;
-  set.type = light.lamp.substr(0, 78);
+  set.type = shortened(light.lamp, 78);
   set.watts = light.watts;
   set.lumens = light.lamp_lumens.value_or(light.stated_lumens.value_or(total));
   set.lamps = light.absolute || !light.lamp_lumens ? -1 : 1;

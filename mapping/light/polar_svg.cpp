@@ -58,7 +58,7 @@ Layout layout(const Luminaire& light, const PolarPlot& plot) {
 
 std::string escaped(const std::string& text) {
   std::string result;
-  for (char c : text) switch (c) {
+  for (char c : to_utf8(text)) switch (c) {
       case '&':
         result += "&amp;";
         break;
@@ -72,8 +72,7 @@ std::string escaped(const std::string& text) {
         result += "&quot;";
         break;
       default:
-        // Older files are Latin-1: what is not ASCII would make the SVG invalid.
-        result += static_cast<unsigned char>(c) < 0x80 ? std::string(1, c) : "&#183;";
+        result += c;
     }
   return result;
 }
@@ -107,7 +106,7 @@ std::string polar_svg(const Luminaire& light, const PolarPlot& plot) {
   const std::string title = plot.title.empty() ? light.name : plot.title;
   svg << "<title>" << escaped(title) << "</title>\n<rect width=\"600\" height=\"" << number(height)
       << "\" fill=\"#fff\"/>\n<text x=\"300\" y=\"28\" text-anchor=\"middle\" font-size=\"16\">"
-      << escaped(title.substr(0, 70))
+      << escaped(shortened(title, 70))
       << "</text>\n<text x=\"300\" y=\"48\" text-anchor=\"middle\" fill=\"#555\">" << escaped(unit)
       << ", flux " << format_number(std::round(p.flux * 10) / 10) << " lm</text>\n";
 

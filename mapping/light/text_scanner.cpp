@@ -44,6 +44,40 @@ bool parse_number(std::string_view text, double& value) noexcept {
   return parse_plain(point, value);
 }
 
+std::string to_utf8(std::string_view text) {
+  const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
+  bool valid = true;
+  for (std::size_t k = 0; k < text.size() && valid;) {
+    const unsigned char b = byte(k++);
+    const int more = b < 0x80                ? 0
+                     : b >= 0xC2 && b < 0xE0 ? 1
+                     : b >= 0xE0 && b < 0xF0 ? 2
+                     : b >= 0xF0 && b < 0xF5 ? 3
+                                             : -1;
+    valid = more >= 0;
+    for (int m = 0; m < more && valid; ++m) valid = k < text.size() && (byte(k++) & 0xC0) == 0x80;
+  }
+  std::string result;
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    const unsigned char b = byte(k);
+    if (b < 0x20) {
+      result += ' ';
+    } else if (b < 0x80 || valid) {
+      result += text[k];
+    } else {
+      result += static_cast<char>(0xC0 | b >> 6);
+      result += static_cast<char>(0x80 | (b & 0x3F));
+    }
+  }
+  return result;
+}
+
+std::string shortened(const std::string& text, std::size_t bytes) {
+  if (text.size() <= bytes) return text;
+  while (bytes > 0 && (static_cast<unsigned char>(text[bytes]) & 0xC0) == 0x80) --bytes;
+  return text.substr(0, bytes);
+}
+
 std::string format_number(double value) {
   char text[40];
   std::snprintf(text, sizeof text, "%.7g", value);

@@ -47,6 +47,11 @@ std::string_view trimmed(std::string_view text) noexcept;
 /// The number that is the whole of `text` (decimal point or comma, blanks around), if it is one and
 /// finite.
 bool parse_number(std::string_view text, double& value) noexcept;
+/// `text` if it is valid UTF-8, otherwise its bytes read as Latin-1 (as older files are), as UTF-8;
+/// control characters become blanks.
+std::string to_utf8(std::string_view text);
+/// UTF-8 text cut to at most `bytes`, between characters.
+std::string shortened(const std::string& text, std::size_t bytes);
 /// `value` with at most seven significant digits, the shortest such text.
 std::string format_number(double value);
 
