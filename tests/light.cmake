@@ -23,3 +23,7 @@ add_test(NAME glsl_330 COMMAND ${GLSLANG} -I${glsl_folder} ${PROJECT_SOURCE_DIR}
 add_test(NAME glsl_vulkan
   COMMAND ${GLSLANG} -V -I${glsl_folder} -o ${CMAKE_CURRENT_BINARY_DIR}/ldt_vulkan.spv
     ${PROJECT_SOURCE_DIR}/tests/glsl/ldt.comp)
+
+gonio_test(light_tool_test LIBS gonio::light_exr)
+target_compile_definitions(light_tool_test PRIVATE GONIO_TOOL="$<TARGET_FILE:gonio_tool>")
+add_dependencies(light_tool_test gonio_tool)

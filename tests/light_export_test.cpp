@@ -309,7 +309,10 @@ TEST(LightExport, BadFilesAreRefused) {
   const TemporaryFile own("own.exr"), other("oct.exr");
   save_octahedral(other.path(), bilinear_reconstruction(testing::lambertian().diagram), 16);
   EXPECT_THROW(load_light_exr(other.path()), Error);  // an image, not a diagram
+  EXPECT_FALSE(is_light_file(other.path()));
+  EXPECT_FALSE(is_light_file("/nonexistent"));
   save_light(own.path(), testing::lambertian());
+  EXPECT_TRUE(is_light_file(own.path()));
   const auto size = std::filesystem::file_size(own.path());
   std::filesystem::resize_file(own.path(), size / 2);
   EXPECT_THROW(load_light_exr(own.path()), Error);

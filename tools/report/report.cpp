@@ -1,6 +1,7 @@
 #include <gonio/tools/report/report.h>
 
 #include <gonio/mapping/error.h>
+#include <gonio/mapping/light/exr/light_exr.h>
 #include <gonio/tools/options.h>
 #include <gonio/tools/progress.h>
 #include <gonio/tools/report/measure_material.h>
@@ -15,6 +16,16 @@
 
 namespace gonio {
 
+namespace {
+
+LightReport measure_light(const std::filesystem::path& path) {
+  Deviations ignored;
+  const Luminaire light = load_any_light(path, {}, ignored);
+  return {path.stem().string(), path.filename().string(), light.format, flux(light.diagram), emission_quality(light.diagram)};
+}
+
+}  // namespace
+
 void add_report(CLI::App& app) {
   struct Options {
     std::vector<std::filesystem::path> inputs;
@@ -23,7 +34,7 @@ void add_report(CLI::App& app) {
   };
   auto options = std::make_shared<Options>();
   CLI::App* verb = app.add_subcommand("report", "Measure how well materials are sampled, by every method");
-  verb->add_option("IN", options->inputs, "Tables (MERL, RGL, MBSDF) or stack files")->required();
+  verb->add_option("IN", options->inputs, "Tables (MERL, RGL, MBSDF), stack files, or luminaires (IES, EULUMDAT, light EXR)")->required();
   verb->add_option("-o,--output", options->directory, "Folder for report.json and report.md")->required();
   verb->add_option_function<std::string>(
           "--grid",
@@ -37,7 +48,7 @@ void add_report(CLI::App& app) {
   add_cell_policies(*verb, options->report.policies);
   verb->footer(
       "Angles 2, 10, 30, 50, 70, 80 and 85 degrees. Methods: uniform, cosine, nearest, mixture, displacement,\n"
-      "and for RGL files rgl, the format's own warps.\n\n"
+      "and for RGL files rgl, the format's own warps. Luminaires: relative variance and speed of emission.\n\n"
       "Examples:\n"
       "  gonio report chrome.binary -o report\n"
       "  gonio report measured/*.bsdf --bytes 128KiB -o report");
@@ -47,6 +58,10 @@ void add_report(CLI::App& app) {
     for (std::size_t k = 0; k < options->inputs.size(); ++k) {
       ProgressLine line("report " + options->inputs[k].filename().string() + " (" + std::to_string(k + 1) + " of " +
                         std::to_string(options->inputs.size()) + ")");
+      if (is_light_file(options->inputs[k])) {
+        report.lights.push_back(measure_light(options->inputs[k]));
+        continue;
+      }
       report.materials.push_back(
           measure_material(options->inputs[k], options->report, [&](double share) { line.update(share); }));
     }

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <gonio/brdf/proof/measure.h>
+#include <gonio/mapping/light/emission.h>
 
 namespace gonio {
 
@@ -34,6 +35,13 @@ struct MaterialReport {
   std::optional<Stack<float>> stack;  ///< of `displacement`, for the figure; not part of the JSON
 };
 
+/// The emission of one luminaire, sampled by every method.
+struct LightReport {
+  std::string name, source, format;
+  double flux;  ///< [lm], by quadrature of the bilinear diagram
+  std::vector<EmissionQuality> methods;
+};
+
 struct Machine {
   std::string cpu, compiler;
   unsigned threads;
@@ -42,6 +50,7 @@ struct Machine {
 struct Report {
   Machine machine;
   std::vector<MaterialReport> materials;
+  std::vector<LightReport> lights;
 };
 
 /// The incident angles of every report, in degrees.

@@ -70,6 +70,12 @@ void write_markdown(std::ostream& out, const Report& report) {
       }
     }
   }
+  for (const LightReport& light : report.lights) {
+    out << "\n## " << light.name << "\n\n" << light.format << ", `" << light.source << "`, " << number(light.flux, 6)
+        << " lm. `relvar` is that of emission: w is intensity / pdf.\n\n| method | flux, lm | relvar | ns a draw |\n|---|---|---|---|\n";
+    for (const EmissionQuality& q : light.methods)
+      out << "| " << q.method << " | " << number(q.flux, 6) << " | " << number(q.relvar, 2) << " | " << number(q.nanoseconds_per_draw) << " |\n";
+  }
 }
 
 }  // namespace
@@ -102,9 +108,17 @@ nlohmann::json to_json(const Report& report) {
                          {"source_bytes", material.source_bytes},
                          {"methods", std::move(methods)}});
   }
+  nlohmann::json lights = nlohmann::json::array();
+  for (const LightReport& light : report.lights) {
+    nlohmann::json methods = nlohmann::json::array();
+    for (const EmissionQuality& q : light.methods)
+      methods.push_back({{"method", q.method}, {"flux", q.flux}, {"relvar", q.relvar}, {"ns", q.nanoseconds_per_draw}});
+    lights.push_back({{"name", light.name}, {"source", light.source}, {"format", light.format}, {"flux", light.flux}, {"methods", std::move(methods)}});
+  }
   return {{"gonio_version", GONIO_VERSION},
           {"machine", {{"cpu", report.machine.cpu}, {"compiler", report.machine.compiler}, {"threads", report.machine.threads}}},
-          {"materials", std::move(materials)}};
+          {"materials", std::move(materials)},
+          {"lights", std::move(lights)}};
 }
 
 void write_report(const std::filesystem::path& directory, const Report& report) {
@@ -133,6 +147,9 @@ void print_summary(std::ostream& out, const Report& report) {
       out << '\n';
     }
   }
+  for (const LightReport& light : report.lights)
+    for (const EmissionQuality& q : light.methods)
+      out << light.name << ": " << q.method << ": relvar " << number(q.relvar, 2) << ", " << number(q.nanoseconds_per_draw) << " ns a draw\n";
 }
 
 }  // namespace gonio

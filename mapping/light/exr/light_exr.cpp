@@ -14,6 +14,7 @@
 #include <gonio/mapping/light/octahedral.h>
 
 #include <cmath>
+#include <fstream>
 #include <vector>
 
 namespace gonio {
@@ -186,6 +187,22 @@ Luminaire load_light_exr(const std::filesystem::path& path) {
   } catch (const std::exception& e) {
     throw Error(path.string() + ": damaged: " + e.what());
   }
+}
+
+bool is_light_file(const std::filesystem::path& path) {
+  if (is_exr(path)) {
+    try {
+      const Imf::InputFile file(path.c_str());
+      return file.header().find("gonioLight") != file.header().end();
+    } catch (const std::exception&) {
+      return false;  // another kind of EXR, or a damaged one
+    }
+  }
+  std::ifstream stream(path, std::ios::binary);
+  std::string start(1 << 16, '\0');
+  stream.read(start.data(), static_cast<std::streamsize>(start.size()));
+  start.resize(static_cast<std::size_t>(stream.gcount()));
+  return light_format(start) != LightFormat::unknown;
 }
 
 Luminaire load_any_light(const std::filesystem::path& path, const LightOptions& options,

@@ -1,0 +1,103 @@
+// Runs the verb light of the program GONIO_TOOL as a user does.
+
+#include <gonio/mapping/light/exr/light_exr.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+
+#include "light_cases.h"
+
+namespace gonio {
+namespace {
+
+namespace fs = std::filesystem;
+
+class LightTool : public ::testing::Test {
+ protected:
+  LightTool()
+      : folder_(fs::path(::testing::TempDir()) / ("light_tool_" + std::to_string(getpid()))) {
+    fs::create_directories(folder_);
+    std::ofstream(folder_ / "in.ldt", std::ios::binary)
+        << testing::eulumdat_text(testing::asymmetric());
+  }
+  ~LightTool() override { fs::remove_all(folder_); }
+
+  int run(const std::string& arguments) const {
+    const int status = std::system(
+        ("cd '" + folder_.string() + "' && '" GONIO_TOOL "' " + arguments + " >out 2>err").c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  std::string read(const std::string& name) const {
+    std::ifstream stream(folder_ / name, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  }
+  /// The program fails, prints one line on stderr that holds `text`, and leaves no file `output`.
+  void refused(const std::string& arguments, const std::string& text,
+               const std::string& output = "none") const {
+    EXPECT_EQ(run(arguments), 1) << arguments;
+    const std::string error = read("err");
+    EXPECT_NE(error.find(text), std::string::npos) << error;
+    EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 1) << error;
+    EXPECT_FALSE(fs::exists(folder_ / output));
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(LightTool, ConvertKeepsTheLight) {
+  const LightDiagram expected = testing::asymmetric().diagram;
+  for (const std::string name : {"a.ies", "a.ldt", "a.exr"}) {
+    ASSERT_EQ(run("light convert in.ldt " + name), 0) << read("err");
+    Deviations deviations;
+    const Luminaire light = load_any_light(folder_ / name, {}, deviations);
+    EXPECT_LT(testing::largest_difference(expected, light.diagram), 2e-6) << name;
+  }
+  ASSERT_EQ(run("light convert a.exr b.pbrt --resolution 64 --filter bspline"), 0) << read("err");
+  EXPECT_NE(read("b.pbrt").find("\"b.pbrt.exr\""), std::string::npos);
+  EXPECT_TRUE(fs::exists(folder_ / "b.pbrt.exr"));
+  ASSERT_EQ(run("light convert in.ldt ll.exr --layout latlong --resolution 32"), 0) << read("err");
+  ASSERT_EQ(run("light convert in.ldt one.ies --normalise flux --target 1000"), 0) << read("err");
+  EXPECT_NEAR(flux(load_light(folder_ / "one.ies").diagram), 1000, 0.01);
+}
+
+TEST_F(LightTool, ShowsAndMeasures) {
+  ASSERT_EQ(run("light info in.ldt"), 0) << read("err");
+  EXPECT_NE(read("out").find("1000.00 cd at C 30, gamma 40 degrees"), std::string::npos)
+      << read("out");
+  ASSERT_EQ(run("light validate in.ldt"), 0) << read("err");
+  EXPECT_NE(read("out").find("0 deviations"), std::string::npos) << read("out");
+  ASSERT_EQ(run("light plot in.ldt p.svg --planes 30 --klm"), 0) << read("err");
+  EXPECT_NE(read("p.svg").find("C30 right, C210 left"), std::string::npos);
+  for (const std::string name : {"s.obj", "s.ply"}) {
+    ASSERT_EQ(run("light solid in.ldt " + name + " --rows 20 --filter two-plane"), 0)
+        << read("err");
+    EXPECT_GT(fs::file_size(folder_ / name), 1000u);
+  }
+  ASSERT_EQ(run("light sample in.ldt --draws 5"), 0) << read("err");
+  const std::string csv = read("out");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 6);
+  ASSERT_EQ(run("light compare in.ldt --rows 30"), 0) << read("err");
+  EXPECT_NE(read("out").find("Every second angle left out"), std::string::npos);
+  ASSERT_EQ(run("report in.ldt -o folder"), 0) << read("err");
+  EXPECT_NE(read("folder/report.md").find("goniometric mapping, corrected"), std::string::npos);
+  EXPECT_NE(read("folder/report.json").find("\"lights\""), std::string::npos);
+}
+
+TEST_F(LightTool, RefusesWithOneLine) {
+  std::ofstream(folder_ / "bad.ies") << "IESNA91\nTILT=NONE\nfile format error\n";
+  refused("light info bad.ies", "line 3: number of lamps");
+  refused("light validate bad.ies in.ldt", "found 1 of 2 files unusable");
+  refused("light info missing.ldt", "missing.ldt");
+  refused("light convert in.ldt x.step", ".step", "x.step");
+  refused("light convert in.ldt x.ies --filter bspline", "--filter", "x.ies");
+  refused("light convert bad.ies x.exr", "line 3", "x.exr");
+  refused("light plot in.ldt x.svg --planes 1,2,3,4,5", "planes", "x.svg");
+  refused("light", "required");
+}
+
+}  // namespace
+}  // namespace gonio
