@@ -125,6 +125,11 @@ TEST(Eulumdat, RoundTrip) {
   EXPECT_EQ(find_symmetry(mirrored.diagram), LightSymmetry::c90_c270);
   for (const Luminaire& light : {testing::lambertian(), testing::asymmetric(),
                                  testing::narrow_spot(), mirrored, testing::uplight()}) {
+    const EulumdatFile file = to_eulumdat(light);
+    EXPECT_EQ(file.intensity.size(), file.stored_c().size() * file.gamma.size()) << light.name;
+    Deviations deviations;
+    read_eulumdat(testing::eulumdat_text(light), "test.ldt", deviations);
+    for (const Deviation& d : deviations) ADD_FAILURE() << light.name << ": " << to_string(d);
     const Luminaire again = testing::from_eulumdat(testing::eulumdat_text(light));
     EXPECT_LT(testing::largest_difference(light.diagram, again.diagram), 1e-6) << light.name;
     EXPECT_NEAR(again.downward_fraction.value(),

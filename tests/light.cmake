@@ -19,7 +19,14 @@ add_custom_target(ldt_spirv DEPENDS ${ldt_spirv})
 gonio_test(glsl_test LIBS gonio::light OpenGL::OpenGL OpenGL::EGL)
 target_compile_definitions(glsl_test PRIVATE GONIO_LDT_SPIRV="${ldt_spirv}")
 add_dependencies(glsl_test ldt_spirv)
-add_test(NAME glsl_330 COMMAND ${GLSLANG} -I${glsl_folder} ${PROJECT_SOURCE_DIR}/tests/glsl/point_light.frag)
+# As a program pastes it into its own shader, without the include extension.
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
+  ${glsl_folder}/ldt.glsl ${PROJECT_SOURCE_DIR}/tests/glsl/point_light.frag)
+file(READ ${glsl_folder}/ldt.glsl ldt_include)
+file(READ ${PROJECT_SOURCE_DIR}/tests/glsl/point_light.frag point_light)
+string(REPLACE "#include \"ldt.glsl\"" "${ldt_include}" point_light "${point_light}")
+file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/point_light.frag "${point_light}")
+add_test(NAME glsl_330 COMMAND ${GLSLANG} ${CMAKE_CURRENT_BINARY_DIR}/point_light.frag)
 add_test(NAME glsl_vulkan
   COMMAND ${GLSLANG} -V -I${glsl_folder} -o ${CMAKE_CURRENT_BINARY_DIR}/ldt_vulkan.spv
     ${PROJECT_SOURCE_DIR}/tests/glsl/ldt.comp)

@@ -331,6 +331,8 @@ EulumdatFile to_eulumdat(const Luminaire& light) {
       std::copy_n(folded.cd.begin() + static_cast<std::ptrdiff_t>((m - 1 - i) * n), n,
                   file.intensity.begin() + static_cast<std::ptrdiff_t>(i * n));
   }
+  // Without symmetry fold() keeps the closing meridian; the format has none at 360 degrees.
+  if (symmetry == LightSymmetry::none) file.intensity.resize(file.c.size() * file.gamma.size());
   for (double& v : file.intensity) v *= scale;
   const auto step = [](const std::vector<double>& x) {
     if (x.size() < 2) return 0.0;

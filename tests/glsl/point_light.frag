@@ -1,6 +1,5 @@
 // The include in an older GLSL, as a fragment shader uses it.
 #version 330
-#extension GL_GOOGLE_include_directive : require
 #include "ldt.glsl"
 
 uniform sampler2D ldt_texels;
