@@ -11,7 +11,7 @@
 
 #include <gonio/brdf/parallel.h>
 #include <gonio/mapping/error.h>
-#include <gonio/mapping/fit.h>
+#include <gonio/mapping/diagram_fit.h>
 
 namespace gonio {
 namespace {
@@ -22,15 +22,16 @@ constexpr double largest_angle = 89.5 * degree;
 constexpr double smallest_gap = 0.1 * degree;
 
 DiagramGrid build_diagram(const BrdfTable& table, double theta_i, const StackOptions& options) {
-  DiagramGrid grid = fit_diagram(
-      [&](Polar<double> at) { return transfer_density(table, theta_i, at); }, Azimuth::half,
-      {options.meridians, options.parallels, options.tolerance / 2});
-  const bool black = std::all_of(grid.density.begin(), grid.density.end(), [](double d) { return d == 0; });
-  if (!black) grid = Diagram<double>(grid).grid();
-  const double share = black ? 1 : cosine_share;
+  const FitLimits limits{options.meridians, options.parallels, options.tolerance / 2};
+  DiagramGrid grid = fit_diagram([&](Polar<double> at) { return transfer_density(table, theta_i, at); },
+                                 Azimuth::half, limits);
+  const auto cosine = [](Polar<double> at) { return (1 - at.r * at.r) / pi<double>; };
+  if (std::all_of(grid.density.begin(), grid.density.end(), [](double d) { return d == 0; }))
+    return fit_diagram(cosine, Azimuth::half, limits);
+  grid = Diagram<double>(grid).grid();
   for (std::size_t i = 0; i < grid.phi.size(); ++i)
     for (std::size_t j = 0; j < grid.r.size(); ++j)
-      grid.at(i, j) = (1 - share) * grid.at(i, j) + share * (1 - grid.r[j] * grid.r[j]) / pi<double>;
+      grid.at(i, j) = (1 - cosine_share) * grid.at(i, j) + cosine_share * cosine({grid.r[j], grid.phi[i]});
   return grid;
 }
 

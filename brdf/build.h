@@ -9,7 +9,7 @@ namespace gonio {
 
 /// The size of a stack: what ends its growth, whichever comes first.
 struct StackOptions {
-  int incident = 128;              ///< at most this many incident angles, >= 2
+  int incident = 192;              ///< at most this many incident angles, >= 2
   int meridians = 40;              ///< at most this many in a diagram, >= 2
   int parallels = 40;              ///< at most this many in a diagram, >= 2
   std::size_t bytes = 480 * 1024;  ///< at most this much memory, once there are seven diagrams

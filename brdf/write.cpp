@@ -10,6 +10,27 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
+// Mean of f_r over a cell of MERL, weighted with both cosines; negative below the horizon.
+glm::vec3 cell_mean(const BrdfTable& table, double i, double j, double k, bool reciprocal) {
+  constexpr int n_sub = 2;
+  glm::vec3 sum(0.0f);
+  float weights = 0.0f;
+  for (int a = 0; a < n_sub * n_sub * n_sub; ++a) {
+    const auto offset = [&](int index) { return (index % n_sub + 0.5) / n_sub; };
+    const double s = (i + offset(a / n_sub / n_sub)) / MerlFile::n_theta_h;
+    glm::vec3 wi, wo;
+    directions_from_half_difference(pi / 2 * s * s, (j + offset(a / n_sub)) * pi / 180,
+                                    (k + offset(a)) * pi / 180, wi, wo);
+    if (!(wi.z > 0.0f && wo.z > 0.0f)) continue;
+    const float weight = wi.z * wo.z;
+    glm::vec3 f_r = table.eval(wi, wo);
+    if (reciprocal) f_r = 0.5f * (f_r + table.eval(wo, wi));
+    sum += weight * f_r;
+    weights += weight;
+  }
+  return weights > 0.0f ? sum / weights : glm::vec3(-1.0f);
+}
+
 }  // namespace
 
 MerlFile sample_as_merl(const BrdfTable& table, int n_phi_d) {
@@ -21,19 +42,13 @@ MerlFile sample_as_merl(const BrdfTable& table, int n_phi_d) {
   const std::size_t n = file.cells(), row = n / MerlFile::n_theta_h;
   file.values.resize(3 * n);
   parallel_for(MerlFile::n_theta_h, [&](std::size_t i) {
-    const double s = (static_cast<double>(i) + 0.5) / MerlFile::n_theta_h;
     for (std::size_t k = 0; k < row; ++k) {
-      const auto theta_d = static_cast<double>(k / static_cast<std::size_t>(n_phi_d));
-      const auto phi_d = static_cast<double>(k % static_cast<std::size_t>(n_phi_d));
-      glm::vec3 wi, wo;
-      directions_from_half_difference(pi / 2 * s * s, (theta_d + 0.5) * pi / 180,
-                                      (phi_d + 0.5) * pi / 180, wi, wo);
-      const bool above = wi.z > 0.0f && wo.z > 0.0f;
-      glm::vec3 f_r = table.eval(wi, wo);
-      if (n_phi_d == 180) f_r = 0.5f * (f_r + table.eval(wo, wi));
+      const glm::vec3 f_r = cell_mean(
+          table, static_cast<double>(i), static_cast<double>(k / static_cast<std::size_t>(n_phi_d)),
+          static_cast<double>(k % static_cast<std::size_t>(n_phi_d)), n_phi_d == 180);
       for (int c = 0; c < 3; ++c) {
         file.values[static_cast<std::size_t>(c) * n + i * row + k] =
-            above ? f_r[c] / merl_scale[c] : -1.0;
+            f_r[c] < 0.0f ? -1.0 : f_r[c] / merl_scale[c];
       }
     }
   });

@@ -8,11 +8,15 @@
 
 namespace gonio {
 
-/// Any table in the layout of MERL, sampled at the cell centres; cells with a direction at or below
-/// the horizon get -1. With n_phi_d = 180 the layout is reciprocal: a cell holds the mean of
-/// f_r(wi, wo) and f_r(wo, wi). With 360 nothing is averaged. Uses all cores.
+/// Any table in the layout of MERL: each cell holds the mean of f_r at 2 x 2 x 2 points, weighted
+/// with both cosines; cells with no pair of directions above the horizon get -1. Uses all cores.
+///
+/// With 360 phi_d bins the directional albedos of measured materials keep within 1.2 % up to 85
+/// degrees. The common layout with 180 bins is reciprocal by construction: a cell holds the mean of
+/// f_r(wi, wo) and f_r(wo, wi), and measured materials, which are not reciprocal, change albedo by
+/// up to 20 % near grazing.
 /// @throws Error if n_phi_d is neither 180 nor 360.
-MerlFile sample_as_merl(const BrdfTable& table, int n_phi_d = 180);
+MerlFile sample_as_merl(const BrdfTable& table, int n_phi_d = 360);
 
 /// Any table on the grid of MBSDF, sampled at the cell centres with wo on the side phi >= 0. Uses
 /// all cores. @throws Error if a size is not in 1 to 16384.
@@ -20,7 +24,7 @@ GridFile sample_as_grid(const BrdfTable& table, int n_theta, int n_phi);
 
 /// sample_as_merl and write_merl.
 void write_table_as_merl(const BrdfTable& table, const std::filesystem::path& path,
-                         int n_phi_d = 180);
+                         int n_phi_d = 360);
 
 /// sample_as_grid and write_mbsdf.
 void write_table_as_mbsdf(const BrdfTable& table, const std::filesystem::path& path,

@@ -103,7 +103,7 @@ bool contains(const std::string& text, const std::string& part) {
 // ---------------------------------------------------------------- usage
 
 TEST_F(ToolTest, HelpHasExamples) {
-  for (const std::string verb : {"info", "validate", "convert", "synth"}) {
+  for (const std::string verb : {"info", "validate", "convert", "synth", "report"}) {
     const Outcome run = execute(verb + " --help");
     EXPECT_EQ(run.code, 0);
     EXPECT_TRUE(run.errors.empty());
@@ -127,7 +127,7 @@ TEST_F(ToolTest, Version) {
 
 TEST_F(ToolTest, UsageErrors) {
   write("a.mbsdf", test::sample_mbsdf());
-  expect_error("", {"gonio: ", "expected one of info, validate, convert, synth"});
+  expect_error("", {"gonio: ", "expected one of info, validate, convert, report, synth"});
   expect_error("frobnicate", {"found 'frobnicate'", "info"});
   expect_error("info", {"gonio info: ", "FILE"});
   expect_error("info a.mbsdf b.mbsdf", {"b.mbsdf"});

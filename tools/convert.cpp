@@ -126,21 +126,12 @@ void add_convert(CLI::App& app) {
   verb->add_option("OUT", options->out,
                    "File to write; its extension, .exr, .binary or .mbsdf, is its format")
       ->required();
-  verb->add_option("--incident", stack.incident, ".exr: at most this many incident angles")
-      ->capture_default_str();
   verb->add_option("--grid", options->grid,
                    ".exr: at most M meridians and N parallels in a diagram [" +
                        std::to_string(stack.meridians) + "x" + std::to_string(stack.parallels) +
                        "]; .mbsdf: M thetas and N phis [90x180]")
       ->type_name("MxN");
-  verb->add_option_function<std::string>(
-          "--bytes",
-          [&stack](const std::string& text) { stack.bytes = parse_bytes("--bytes", text); },
-          ".exr: at most this much memory for the diagrams (once there are seven), such as 1MiB")
-      ->type_name("SIZE")
-      ->default_str(std::to_string(stack.bytes / 1024) + "KiB");
-  verb->add_option("--tolerance", stack.tolerance, ".exr: relative variance that is good enough")
-      ->capture_default_str();
+  add_stack_options(*verb, stack);
   verb->add_option("--phi-d", options->n_phi_d,
                    ".binary: bins of phi_d, 360 or 180; most other programs read 180 alone, which "
                    "averages f_r(wi, wo) and f_r(wo, wi)")

@@ -1,6 +1,7 @@
 #include <gonio/mapping/error.h>
 #include <gonio/tools/convert.h>
 #include <gonio/tools/info.h>
+#include <gonio/tools/report/report.h>
 #include <gonio/tools/synth.h>
 #include <gonio/tools/validate.h>
 
@@ -46,6 +47,7 @@ int main(int argc, char** argv) {
   gonio::add_info(app);
   gonio::add_validate(app);
   gonio::add_convert(app);
+  gonio::add_report(app);
   gonio::add_synth(app);
   try {
     app.parse(argc, argv);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <gonio/brdf/cells.h>
+#include <gonio/brdf/build.h>
 
 #include <CLI/App.hpp>
 #include <cstddef>
@@ -15,11 +15,12 @@ namespace gonio {
 /// `policies` must outlive the parsing.
 void add_cell_policies(CLI::App& verb, CellPolicies& policies);
 
-/// True if one of them was given.
-bool cell_policies_given(const CLI::App& verb);
-
 /// "zero", "fill" or "reject".
 const char* to_string(CellPolicy policy) noexcept;
+
+/// The options --incident, --bytes and --tolerance of a verb that builds stacks.
+/// `stack` must outlive the parsing.
+void add_stack_options(CLI::App& verb, StackOptions& stack);
 
 /// Two positive numbers, as in "40x30". @throws CLI::ValidationError naming `option`
 std::pair<int, int> parse_grid(const std::string& option, const std::string& text);
