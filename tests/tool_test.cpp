@@ -14,7 +14,6 @@
 #include <fstream>
 #include <glm/common.hpp>
 #include <limits>
-#include <regex>
 #include <sstream>
 
 namespace gonio {
@@ -27,6 +26,14 @@ struct Outcome {
   std::string out;
   std::vector<std::string> errors;  // lines on stderr that are not progress
 };
+
+/// "building the stack of a.mbsdf: 30 %, 2 s"
+bool is_progress(const std::string& line) {
+  const std::string verb = line.substr(0, line.find(' '));
+  const std::string verbs[] = {"reading", "building", "writing", "computing", "checking"};
+  return std::find(std::begin(verbs), std::end(verbs), verb) != std::end(verbs) &&
+         line.size() > 2 && line.substr(line.size() - 2) == " s";
+}
 
 class ToolTest : public testing::Test {
  protected:
@@ -54,9 +61,8 @@ class ToolTest : public testing::Test {
     const int status = std::system(command.c_str());
     Outcome run{WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_bytes(out), {}};
     std::istringstream lines(read_bytes(err));
-    const std::regex progress("(reading|building|writing|computing|checking) .*: .*[0-9]+ s");
     for (std::string line; std::getline(lines, line);) {
-      if (!std::regex_match(line, progress)) run.errors.push_back(line);
+      if (!is_progress(line)) run.errors.push_back(line);
     }
     fs::remove(out);
     fs::remove(err);
@@ -100,6 +106,23 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
+/// The albedo that `gonio info` printed for an angle; -1 if there is none.
+glm::vec3 printed_albedo(const std::string& text, int degrees) {
+  std::istringstream lines(text.substr(std::min(text.size(), text.find("albedo "))));
+  std::string line;
+  std::getline(lines, line);
+  for (int angle = 0; std::getline(lines, line);) {
+    glm::vec3 albedo;
+    if (std::istringstream(line) >> angle >> albedo.r >> albedo.g >> albedo.b && angle == degrees)
+      return albedo;
+  }
+  return glm::vec3(-1);
+}
+
+void expect_near(const glm::vec3& found, const glm::vec3& expected, float tolerance) {
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], tolerance) << "channel " << c;
+}
+
 // ---------------------------------------------------------------- usage
 
 TEST_F(ToolTest, HelpHasExamples) {
@@ -122,7 +145,7 @@ TEST_F(ToolTest, HelpHasExamples) {
 TEST_F(ToolTest, Version) {
   const Outcome run = execute("--version");
   EXPECT_EQ(run.code, 0);
-  EXPECT_TRUE(std::regex_match(run.out, std::regex("gonio [0-9]+\\.[0-9]+\\.[0-9]+\n"))) << run.out;
+  EXPECT_EQ(run.out, "gonio " GONIO_VERSION "\n");
 }
 
 TEST_F(ToolTest, UsageErrors) {
@@ -218,7 +241,7 @@ TEST_F(ToolTest, InfoOfTables) {
   EXPECT_TRUE(contains(mbsdf, "6 x 6 x 8 cells")) << mbsdf;
   EXPECT_TRUE(contains(mbsdf, "theta_i     7.5 to 82.5")) << mbsdf;
   EXPECT_TRUE(contains(mbsdf, std::to_string(test::sample_mbsdf().size()) + " bytes")) << mbsdf;
-  EXPECT_TRUE(std::regex_search(mbsdf, std::regex(" 30 +0\\.5000 +0\\.5000 +0\\.5000\n"))) << mbsdf;
+  expect_near(printed_albedo(mbsdf, 30), glm::vec3(0.5f), 1e-4f);
 
   write("a.bsdf", test::sample_rgl());
   const std::string rgl = execute("info a.bsdf").out;
@@ -231,8 +254,8 @@ TEST_F(ToolTest, InfoOfTables) {
   const std::string merl = execute("info a.binary").out;
   EXPECT_TRUE(contains(merl, "format      MERL\n")) << merl;
   EXPECT_TRUE(contains(merl, "size        90 x 90 x 180 cells")) << merl;
-  // 100 / 1500 pi for red.
-  EXPECT_TRUE(std::regex_search(merl, std::regex(" 30 +0\\.209. +0\\.240. +0\\.347.\n"))) << merl;
+  const float albedo = 100.0f / 1500 * pi<float>;
+  expect_near(printed_albedo(merl, 30), {albedo, 1.15f * albedo, 1.66f * albedo}, 1e-3f);
 }
 
 TEST_F(ToolTest, InfoCountsRepairedCells) {
@@ -262,7 +285,7 @@ TEST_F(ToolTest, InfoOfAStack) {
                            "colour      16 x 8 cells"}) {
     EXPECT_TRUE(contains(text, part)) << part << "\nin " << text;
   }
-  EXPECT_TRUE(std::regex_search(text, std::regex(" 30 +0\\.50.. +0\\.50.. +0\\.50..\n"))) << text;
+  expect_near(printed_albedo(text, 30), glm::vec3(0.5f), 0.01f);
   const StackFile file = load_stack(path("a.exr"));
   for (const DiagramGrid& grid : file.diagrams.diagrams) {
     EXPECT_LE(grid.phi.size(), 5u);
@@ -411,6 +434,8 @@ struct Damage {
   std::string (*make)(const std::string& good);
   const char* message;
 };
+
+void PrintTo(const Damage& damage, std::ostream* out) { *out << damage.name; }
 
 const char* extension_of(Format format) {
   const char* extensions[] = {".binary", ".bsdf", ".mbsdf", ".exr"};
