@@ -74,15 +74,17 @@ class Growth {
     build(start);
     while (split_worst()) {
     }
+    estimate_errors();
   }
 
   bool out_of_bytes() const { return out_of_bytes_; }
 
-  /// The largest estimate of relvar half way between two angles.
-  double worst() const {
-    double worst = 0;
-    for (const auto& [angle, error] : error_) worst = std::max(worst, error);
-    return worst;
+  /// The mean over the angles of the estimates of relvar. (The worst would say little: it is often
+  /// that of an angle where the table is noise and no stack does better.)
+  double mean_error() const {
+    double sum = 0;
+    for (const auto& [angle, error] : error_) sum += error * (std::next(built_.find(angle))->first - angle);
+    return sum / (built_.rbegin()->first - built_.begin()->first);
   }
 
   StackGrid take() {
@@ -113,13 +115,19 @@ class Growth {
     std::vector<double> unknown;
     for (auto it = built_.begin(); std::next(it) != built_.end(); ++it)
       if (!error_.count(it->first)) unknown.push_back(it->first);
-    std::vector<double> estimate(unknown.size(), 0.0);
-    parallel_for(unknown.size(), [&](std::size_t k) {
-      const auto a = built_.find(unknown[k]);
+    constexpr double probes[] = {0.25, 0.5, 0.75};
+    constexpr std::size_t count = std::size(probes);
+    std::vector<double> estimate(unknown.size() * count, 0.0);
+    parallel_for(estimate.size(), [&](std::size_t k) {
+      const auto a = built_.find(unknown[k / count]);
       const auto b = std::next(a);
-      estimate[k] = interpolation_relvar(table_, (a->first + b->first) / 2, a->second, b->second, 0.5);
+      const double alpha = probes[k % count];
+      estimate[k] = interpolation_relvar(table_, (1 - alpha) * a->first + alpha * b->first, a->second, b->second, alpha);
     });
-    for (std::size_t k = 0; k < unknown.size(); ++k) error_[unknown[k]] = estimate[k];
+    for (std::size_t k = 0; k < unknown.size(); ++k) {
+      const auto worst = std::max_element(estimate.begin() + k * count, estimate.begin() + (k + 1) * count);
+      error_[unknown[k]] = *worst;
+    }
   }
 
   /// Splits the intervals with the largest error, a fixed few at a time, so that the outcome is the
@@ -175,6 +183,7 @@ double transfer_density(const BrdfTable& table, double theta_i, Polar<double> at
   const glm::vec3 wi(static_cast<float>(std::sin(theta_i)), 0, static_cast<float>(std::cos(theta_i)));
   const glm::vec3 wo(polar_to_direction(at));
   const double left = luminance(table.eval(wi, wo));
+  if (std::holds_alternative<GridTable>(table.data())) return left * wo.z;  // mirrored as it is
   const double right = luminance(table.eval(wi, {wo.x, -wo.y, wo.z}));
   return (left + right) / 2 * wo.z;
 }
@@ -185,17 +194,17 @@ StackGrid build_stack(const BrdfTable& table, const StackOptions& options, const
   if (!(options.tolerance > 0))
     throw Error("stack: tolerance: found " + std::to_string(options.tolerance) + ", expected more than 0");
   // When the memory does not suffice for the tolerance, diagrams of that quality leave too few of
-  // them: coarser ones at more angles may do better. The tolerance doubles as long as they do.
+  // them: coarser ones at more angles may do better. The tolerance grows as long as they do.
   StackOptions attempt = options;
   std::optional<StackGrid> best;
   double best_error = std::numeric_limits<double>::infinity();
-  for (bool improved = true; improved; attempt.tolerance *= 2) {
+  for (bool more = true; more; attempt.tolerance *= 2) {
     Growth growth(table, attempt, progress);
-    improved = growth.worst() < best_error && growth.out_of_bytes();
-    if (growth.worst() < best_error) {
-      best_error = growth.worst();
-      best = growth.take();
-    }
+    const bool better = growth.mean_error() < best_error;
+    more = better && growth.out_of_bytes();
+    if (!better) break;
+    best_error = growth.mean_error();
+    best = growth.take();
   }
   if (progress) progress(1);
   return *best;

@@ -46,9 +46,8 @@ void add_stack_options(CLI::App& verb, StackOptions& stack) {
       ->capture_default_str()
       ->group(group);
   verb.add_option_function<std::string>(
-          "--bytes",
-          [&stack](const std::string& text) { stack.bytes = parse_bytes("--bytes", text); },
-          "At most this much memory for the diagrams, once there are seven; such as 1MiB")
+          "--bytes", [&stack](const std::string& text) { stack.bytes = parse_bytes("--bytes", text); },
+          "At most this much memory for the diagrams (once there are seven), such as 1MiB")
       ->type_name("SIZE")
       ->default_str(std::to_string(stack.bytes / 1024) + "KiB")
       ->group(group);
