@@ -1,5 +1,7 @@
+#include <gonio/brdf/frame.h>
 #include <gonio/brdf/parallel.h>
 #include <gonio/fitting/lobe_sampler.h>
+#include <gonio/fitting/lobes/diffuse.h>
 #include <gonio/fitting/proposal.h>
 #include <gonio/mapping/error.h>
 
@@ -26,87 +28,87 @@ LobeSampler::LobeSampler(std::shared_ptr<const BrdfTable> table, const LobeModel
     throw Error("lobe sampler: cosine_share is " + std::to_string(options.cosine_share) +
                 "; expected a value in (0, 1]");
   }
-  std::vector<LobeKind> kinds;
-  for (const Lobe& lobe : model.lobes) {
-    if (lobe.specular()) kinds.push_back(lobe.kind);
-  }
-  lobes_ = static_cast<int>(kinds.size());
-  std::copy(kinds.begin(), kinds.end(), kinds_.begin());
+  lobes_ = model.specular_count();
   nodes_per_radian_ = static_cast<float>((options.angles - 1) / last_angle);
   nodes_.resize(options.angles);
 
   const BrdfFunction f = [this](const glm::vec3& wi, const glm::vec3& wo) {
     return table_->eval(wi, wo);
   };
+  const bool adapt = options.adaption != Adaption::albedo;
+  std::vector<detail::Proposal> proposals(nodes_.size());
+  std::vector<detail::Quadrature> quadratures(nodes_.size());
   parallel_for(nodes_.size(), [&](size_t i) {
     const double theta_i = last_angle * static_cast<double>(i) / (options.angles - 1);
-    detail::Proposal proposal = detail::albedo_proposal(model, theta_i, options.cosine_share);
-    if (options.adaption != Adaption::albedo) {
-      const std::vector<detail::QuadraturePoint> points = detail::quadrature(f, theta_i);
-      if (!points.empty()) {
-        proposal = detail::refine_proposal(
-            points, kinds, proposal, options.adaption == Adaption::shapes, options.cosine_share);
-      }
-    }
-    Node& node = nodes_[i];
-    for (int k = 0; k <= lobes_; ++k) node.weight[k] = static_cast<float>(proposal.weight[k]);
-    for (int k = 0; k < lobes_; ++k) {
-      for (int s = 0; s < max_shape; ++s)
-        node.shape[k][s] = static_cast<float>(proposal.shape[k][s]);
-    }
+    proposals[i] = detail::albedo_proposal(model, theta_i, options.cosine_share);
+    if (adapt) quadratures[i] = detail::quadrature(f, theta_i);
   });
+  if (adapt) {
+    proposals = detail::refine_all(quadratures, std::move(proposals),
+                                   options.adaption == Adaption::shapes, options.cosine_share);
+  }
+  for (size_t i = 0; i < nodes_.size(); ++i) {
+    for (int k = 0; k <= lobes_; ++k)
+      nodes_[i].weight[k] = static_cast<float>(proposals[i].weight[k]);
+    for (int k = 0; k < lobes_; ++k) {
+      const ShearedGgx<double>& s = proposals[i].shape[k];
+      nodes_[i].shape[k] = {static_cast<float>(s.alpha_x), static_cast<float>(s.alpha_y),
+                            static_cast<float>(s.shear)};
+    }
+  }
 }
 
-LobeSampler::Node LobeSampler::at(const glm::vec3& wi) const noexcept {
-  const float theta = std::atan2(std::sqrt(wi.x * wi.x + wi.y * wi.y), wi.z);
-  const float position = std::min(theta * nodes_per_radian_, static_cast<float>(nodes_.size() - 1));
+LobeSampler::Node LobeSampler::at(float theta_i) const noexcept {
+  const float position =
+      std::min(theta_i * nodes_per_radian_, static_cast<float>(nodes_.size() - 1));
   const size_t low = std::min(static_cast<size_t>(position), nodes_.size() - 2);
   const float t = position - static_cast<float>(low);
   Node node = nodes_[low];
   const Node& high = nodes_[low + 1];
   for (int k = 0; k <= lobes_; ++k) node.weight[k] += t * (high.weight[k] - node.weight[k]);
   for (int k = 0; k < lobes_; ++k) {
-    for (int s = 0; s < max_shape; ++s)
-      node.shape[k][s] += t * (high.shape[k][s] - node.shape[k][s]);
+    ShearedGgx<float>& shape = node.shape[k];
+    shape.alpha_x += t * (high.shape[k].alpha_x - shape.alpha_x);
+    shape.alpha_y += t * (high.shape[k].alpha_y - shape.alpha_y);
+    shape.shear += t * (high.shape[k].shear - shape.shear);
   }
   return node;
 }
 
-float LobeSampler::density(const Node& node, const Angles<float>& angles) const noexcept {
-  float sum = node.weight[0] * cosine_pdf(angles.cos_o);
-  for (int k = 0; k < lobes_; ++k) {
-    sum += node.weight[k + 1] * visit_lobe(kinds_[k], node.shape[k].data(),
-                                           [&](const auto& lobe) { return lobe.pdf(angles); });
-  }
+float LobeSampler::density(const Node& node, const glm::vec3& wi,
+                           const glm::vec3& wo) const noexcept {
+  const glm::vec3 h = glm::normalize(wi + wo);
+  float sum = node.weight[0] * cosine_pdf(wo.z);
+  for (int k = 0; k < lobes_; ++k) sum += node.weight[k + 1] * node.shape[k].pdf(wi, h);
   return sum;
 }
 
 std::optional<BsdfSample> LobeSampler::sample(const glm::vec3& wi,
                                               const glm::vec2& u) const noexcept {
   if (!(wi.z > 0)) return std::nullopt;
-  const Node node = at(wi);
+  const IncidentFrame frame(wi);
+  const glm::vec3 wi_diagram = frame.to_diagram(wi);
+  const Node node = at(frame.theta_i);
   int part = 0;
   float below = 0;
   while (part < lobes_ && u.x >= below + node.weight[part]) below += node.weight[part++];
   constexpr float below_one = 1 - 0x1p-24f;
   const float rest = std::min(std::max((u.x - below) / node.weight[part], 0.0f), below_one);
-  std::optional<glm::vec3> wo;
-  if (part == 0) {
-    wo = cosine_sample(rest, u.y);
-  } else {
-    wo = visit_lobe(kinds_[part - 1], node.shape[part - 1].data(),
-                    [&](const auto& lobe) { return lobe.sample(wi, rest, u.y); });
-  }
+  const std::optional<glm::vec3> wo = part == 0
+                                          ? std::optional(cosine_sample(rest, u.y))
+                                          : node.shape[part - 1].sample(wi_diagram, rest, u.y);
   if (!wo || !(wo->z > 0)) return std::nullopt;
-  *wo = glm::normalize(*wo);
-  const float density_here = density(node, Angles<float>(wi, *wo));
+  const glm::vec3 wo_diagram = glm::normalize(*wo), wo_surface = frame.to_surface(wo_diagram);
+  const float density_here = density(node, wi_diagram, wo_diagram);
   if (!(density_here > 0)) return std::nullopt;
-  return BsdfSample{*wo, density_here, table_->eval(wi, *wo) * (wo->z / density_here)};
+  return BsdfSample{wo_surface, density_here,
+                    table_->eval(wi, wo_surface) * (wo_surface.z / density_here)};
 }
 
 float LobeSampler::pdf(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
   if (!(wi.z > 0 && wo.z > 0)) return 0;
-  return density(at(wi), Angles<float>(wi, wo));
+  const IncidentFrame frame(wi);
+  return density(at(frame.theta_i), frame.to_diagram(wi), frame.to_diagram(wo));
 }
 
 glm::vec3 LobeSampler::eval(const glm::vec3& wi, const glm::vec3& wo) const noexcept {

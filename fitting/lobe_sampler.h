@@ -3,6 +3,7 @@
 #include <gonio/brdf/sampler.h>
 #include <gonio/brdf/table.h>
 #include <gonio/fitting/model.h>
+#include <gonio/fitting/sheared_ggx.h>
 
 #include <array>
 #include <cstddef>
@@ -14,25 +15,27 @@ namespace gonio {
 
 /// How the lobes of a LobeSampler follow the incident angle.
 enum class Adaption {
-  albedo,   ///< weights by the lobes' albedos, shapes of the model
-  weights,  ///< weights by least variance, shapes of the model
-  shapes    ///< weights and shapes by least variance, started from the model
+  albedo,   ///< weights by the lobes' albedos, widths of the model
+  weights,  ///< weights by least variance, widths of the model
+  shapes    ///< weights, widths and lean by least variance
 };
 
 struct LobeSamplerOptions {
   Adaption adaption = Adaption::shapes;
-  int angles = 32;  ///< incident angles at which weights and shapes are kept, 0 to 89 degrees, >= 2
+  int angles = 31;  ///< incident angles at which weights and shapes are kept, 0 to 89 degrees, >= 2
   /// Least share of draws by the cosine, so that a table's value is never met with a vanishing pdf:
   /// no weight is above pi f_r / cosine_share.
   float cosine_share = 0.01f;
 };
 
 /// Fitted lobes propose directions for a table: a mixture of a cosine part (for the diffuse lobes)
-/// and of each specular lobe's own sampling, with weights and shapes that depend on the incident
-/// angle. The value is always the table's, so that a poor fit costs variance and nothing else.
+/// and, per specular lobe, of a GGX sampled by visible normals, with weights and shapes that depend
+/// on the incident angle. The value is always the table's, so that a poor fit costs variance and
+/// nothing else.
 ///
 /// Least variance: at each incident angle the chi-square divergence of the mixture from L(f_r)
-/// cos_o, which is the relative variance of one draw, is minimised by Ceres.
+/// cos_o, which is the relative variance of one draw, is minimised by Ceres; shapes are those of
+/// ShearedGgx.
 ///
 /// Frame and one-sidedness as in Sampler. Thread safety: immutable; every const member may be
 /// called concurrently. No member but the constructor allocates or locks.
@@ -63,13 +66,13 @@ class LobeSampler {
   // Weight and shape of every part; the weights sum to 1. Part 0 is the cosine.
   struct Node {
     std::array<float, 1 + max_lobes> weight{};
-    std::array<std::array<float, max_shape>, max_lobes> shape{};
+    std::array<ShearedGgx<float>, max_lobes> shape{};
   };
-  Node at(const glm::vec3& wi) const noexcept;
-  float density(const Node& node, const Angles<float>& angles) const noexcept;
+  Node at(float theta_i) const noexcept;
+  // Both in the frame of the diagram.
+  float density(const Node& node, const glm::vec3& wi, const glm::vec3& wo) const noexcept;
 
   std::shared_ptr<const BrdfTable> table_;
-  std::array<LobeKind, max_lobes> kinds_{};
   int lobes_ = 0;
   float nodes_per_radian_ = 0;
   std::vector<Node> nodes_;

@@ -1,20 +1,21 @@
 #include <ceres/ceres.h>
+#include <gonio/brdf/parallel.h>
 #include <gonio/fitting/proposal.h>
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 namespace gonio::detail {
 namespace {
 
-const Parameter& shape_parameter(LobeKind kind, size_t i) { return lobe_info(kind).shape[i]; }
+constexpr int shape_size = 3;
+constexpr double min_alpha = 0.002, max_alpha = 4, max_shear = 2;
 
-// Half vectors about the normal, theta_h spaced as the cube; phi over half the circle by mirror
-// symmetry.
+// theta_h spaced as the cube; phi over half the circle by mirror symmetry.
 template <class F>
-void for_half_vectors(double theta_i, const F& f) {
+void for_half_vectors(const glm::dvec3& wi, const F& f) {
   constexpr int n_theta = 96, n_phi = 24;
-  const glm::dvec3 wi(std::sin(theta_i), 0, std::cos(theta_i));
   for (int i = 0; i < n_theta; ++i) {
     const double s = (i + 0.5) / n_theta, theta = s * s * s * pi<double> / 2;
     const double d_theta = 3 * s * s * pi<double> / 2 / n_theta;
@@ -24,103 +25,122 @@ void for_half_vectors(double theta_i, const F& f) {
                          std::cos(theta));
       const double cos_d = glm::dot(wi, h);
       if (!(cos_d > 1e-4)) continue;
-      const double solid_angle = 4 * cos_d * std::sin(theta) * d_theta * 2 * pi<double> / n_phi;
-      f(wi, reflect_about(wi, h), solid_angle);
+      f(h, reflect_about(wi, h), 4 * cos_d * std::sin(theta) * d_theta * 2 * pi<double> / n_phi);
     }
   }
 }
 
+glm::dvec3 incident(double theta_i) { return {std::sin(theta_i), 0, std::cos(theta_i)}; }
+
 template <class T>
-T density(const std::vector<LobeKind>& kinds, const T* weight, const T* shape,
-          const Angles<double>& angles) {
-  T sum = weight[0] * T(cosine_pdf(angles.cos_o));
-  for (size_t k = 0; k < kinds.size(); ++k) {
-    sum += weight[k + 1] * visit_lobe(kinds[k], shape + k * max_shape,
-                                      [&](const auto& lobe) { return lobe.pdf(angles); });
-  }
+T density(const Quadrature& quadrature, const Quadrature::Point& point, const T* weight,
+          const ShearedGgx<T>* shape, size_t lobes) {
+  T sum = weight[0] * T(cosine_pdf(point.cos_o));
+  for (size_t k = 0; k < lobes; ++k) sum += weight[k + 1] * shape[k].pdf(quadrature.wi, point.h);
   return sum;
 }
 
 // (target - p) / sqrt(p) at every point: the sum of squares is the chi-square divergence, plus what
 // the mixture loses below the horizon, which is the relative variance of a draw. Parameters: square
-// roots of the weights before normalisation (all but the least share of the cosine), then
-// logarithms of the shapes.
+// roots of the weights before normalisation (the least share of the cosine apart), then per lobe
+// log alpha_x, log alpha_y and shear.
 class Divergence {
  public:
-  Divergence(const std::vector<QuadraturePoint>& points, const std::vector<LobeKind>& kinds,
-             double cosine_share)
-      : points_(points), kinds_(kinds), cosine_share_(cosine_share) {}
+  Divergence(const Quadrature& quadrature, size_t lobes, double cosine_share)
+      : quadrature_(quadrature), lobes_(lobes), cosine_share_(cosine_share) {}
 
   template <class T>
   bool operator()(T const* const* x, T* residual) const {
     using std::exp;
     using std::sqrt;
-    const size_t parts = kinds_.size() + 1;
-    std::array<T, 1 + LobeSampler::max_lobes> weight{};
-    weights(x[0], weight.data());
-    std::array<T, max_shape * LobeSampler::max_lobes> shape{};
-    for (size_t i = 0; i < max_shape * (parts - 1); ++i) shape[i] = exp(x[1][i]);
-    for (size_t i = 0; i < points_.size(); ++i) {
-      const QuadraturePoint& point = points_[i];
-      const T p = density(kinds_, weight.data(), shape.data(), point.angles) + T(1e-12);
-      residual[i] = T(std::sqrt(point.solid_angle)) * (T(point.target) - p) / sqrt(p);
+    T weight[1 + LobeSampler::max_lobes];
+    ShearedGgx<T> shape[LobeSampler::max_lobes];
+    weights(x[0], weight);
+    for (size_t k = 0; k < lobes_; ++k) {
+      const T* p = x[1] + k * shape_size;
+      shape[k] = {exp(p[0]), exp(p[1]), p[2]};
+    }
+    for (const Quadrature::Point& point : quadrature_.points) {
+      const T p = density(quadrature_, point, weight, shape, lobes_) + T(1e-12);
+      *residual++ = T(std::sqrt(point.solid_angle)) * (T(point.target) - p) / sqrt(p);
     }
     return true;
   }
 
   template <class T>
   void weights(const T* x, T* weight) const {
-    const size_t parts = kinds_.size() + 1;
     T sum(0);
-    for (size_t k = 0; k < parts; ++k) sum += x[k] * x[k];
-    for (size_t k = 0; k < parts; ++k) weight[k] = T(1 - cosine_share_) * x[k] * x[k] / sum;
+    for (size_t k = 0; k <= lobes_; ++k) sum += x[k] * x[k];
+    for (size_t k = 0; k <= lobes_; ++k) weight[k] = T(1 - cosine_share_) * x[k] * x[k] / sum;
     weight[0] += T(cosine_share_);
   }
 
  private:
-  const std::vector<QuadraturePoint>& points_;
-  const std::vector<LobeKind>& kinds_;
+  const Quadrature& quadrature_;
+  size_t lobes_;
   double cosine_share_;
 };
 
+// About the width of a GGX with the same peak of its slope distribution.
+double ggx_width(LobeKind kind, double first) {
+  const bool exponent = std::string_view(lobe_info(kind).shape[0].name) == "exponent";
+  return exponent ? std::sqrt(2 / (first + 2)) : first;
+}
+
+// Other ways to lay out the lobes than the model's: nested widths, and leaning to either side.
+std::vector<Proposal> other_starts(const Proposal& model, double cosine_share) {
+  const size_t lobes = model.shape.size();
+  std::vector<Proposal> starts;
+  const double widest[] = {0.8, 0.3, 0.1}, lean[] = {0, 0.4};
+  for (double alpha : widest) {
+    for (double shear : lean) {
+      Proposal start;
+      start.weight.assign(lobes + 1, (1 - cosine_share) / static_cast<double>(lobes + 1));
+      start.weight[0] += cosine_share;
+      for (size_t k = 0; k < lobes; ++k) {
+        const double width = alpha / std::pow(2.5, static_cast<double>(k));
+        start.shape.push_back({width, width, shear * (k % 2 == 0 ? 1 : -1)});
+      }
+      starts.push_back(start);
+    }
+  }
+  return starts;
+}
+
 }  // namespace
 
-std::vector<QuadraturePoint> quadrature(const BrdfFunction& f, double theta_i) {
-  std::vector<QuadraturePoint> points;
+Quadrature quadrature(const BrdfFunction& f, double theta_i) {
+  Quadrature result;
+  result.wi = incident(theta_i);
   double total = 0;
-  for_half_vectors(theta_i, [&](const glm::dvec3& wi, const glm::dvec3& wo, double solid_angle) {
-    const double value = wo.z > 0 ? luminance(f(glm::vec3(wi), glm::vec3(wo))) * wo.z : 0.0;
-    points.push_back({Angles<double>(wi, wo), solid_angle, value});
+  for_half_vectors(result.wi, [&](const glm::dvec3& h, const glm::dvec3& wo, double solid_angle) {
+    const double value = wo.z > 0 ? luminance(f(glm::vec3(result.wi), glm::vec3(wo))) * wo.z : 0.0;
+    result.points.push_back({h, wo.z, solid_angle, value});
     total += value * solid_angle;
   });
-  if (!(total > 0)) return {};
-  for (QuadraturePoint& point : points) point.target /= total;
-  return points;
+  if (!(total > 0)) result.points.clear();
+  for (Quadrature::Point& point : result.points) point.target /= total;
+  return result;
 }
 
 Proposal albedo_proposal(const LobeModel& model, double theta_i, double cosine_share) {
   Proposal proposal;
   proposal.weight.push_back(0);
-  std::vector<size_t> part;  // of each lobe
+  const glm::dvec3 wi = incident(theta_i);
   for (const Lobe& lobe : model.lobes) {
+    size_t part = 0;
     if (lobe.specular()) {
       // A shape that differs between channels: the proposal takes the mean.
-      std::array<double, max_shape> shape{};
-      for (int i = 0; i < max_shape; ++i) {
-        shape[i] = (lobe.shape[i].r + lobe.shape[i].g + lobe.shape[i].b) / 3;
-      }
-      proposal.shape.push_back(shape);
+      const double width =
+          ggx_width(lobe.kind, (lobe.shape[0].r + lobe.shape[0].g + lobe.shape[0].b) / 3);
+      proposal.shape.push_back({width, width, 0});
+      part = proposal.weight.size();
       proposal.weight.push_back(0);
     }
-    part.push_back(lobe.specular() ? proposal.weight.size() - 1 : 0);
-  }
-  for (size_t l = 0; l < model.lobes.size(); ++l) {
-    LobeModel single;
-    single.lobes = {model.lobes[l]};
-    for_half_vectors(theta_i, [&](const glm::dvec3& wi, const glm::dvec3& wo, double solid_angle) {
-      if (wo.z > 0) {
-        proposal.weight[part[l]] += luminance(glm::vec3(single.eval(wi, wo))) * wo.z * solid_angle;
-      }
+    const LobeModel single{"", {lobe}};
+    for_half_vectors(wi, [&](const glm::dvec3&, const glm::dvec3& wo, double solid_angle) {
+      if (wo.z > 0)
+        proposal.weight[part] += luminance(glm::vec3(single.eval(wi, wo))) * wo.z * solid_angle;
     });
   }
   double sum = 0;
@@ -130,52 +150,49 @@ Proposal albedo_proposal(const LobeModel& model, double theta_i, double cosine_s
   return proposal;
 }
 
-double relative_variance(const std::vector<QuadraturePoint>& points,
-                         const std::vector<LobeKind>& kinds, const Proposal& proposal) {
+double relative_variance(const Quadrature& quadrature, const Proposal& proposal) {
   double sum = 0;
-  for (const QuadraturePoint& point : points) {
+  for (const Quadrature::Point& point : quadrature.points) {
     if (!(point.target > 0)) continue;
-    const double* shape = proposal.shape.empty() ? nullptr : proposal.shape[0].data();
-    const double p = density(kinds, proposal.weight.data(), shape, point.angles);
+    const double p = density(quadrature, point, proposal.weight.data(), proposal.shape.data(),
+                             proposal.shape.size());
     sum += point.solid_angle * point.target * point.target / p;
   }
   return sum - 1;
 }
 
-Proposal refine_proposal(const std::vector<QuadraturePoint>& points,
-                         const std::vector<LobeKind>& kinds, const Proposal& start, bool shapes,
+Proposal refine_proposal(const Quadrature& quadrature, const Proposal& start, bool shapes,
                          double cosine_share) {
-  const Divergence divergence(points, kinds, cosine_share);
-  const size_t parts = kinds.size() + 1;
-  std::vector<double> weight_root(parts),
-      log_shape(max_shape * std::max<size_t>(kinds.size(), 1), 0.0);
-  for (size_t k = 0; k < parts; ++k) {
+  const size_t lobes = start.shape.size();
+  if (quadrature.points.empty() || lobes == 0) return start;
+  std::vector<double> root, shape;
+  for (size_t k = 0; k <= lobes; ++k) {
     // Not from 0, where the square root has no slope.
-    weight_root[k] = std::sqrt(std::fmax(start.weight[k] - (k == 0 ? cosine_share : 0), 0.02));
+    root.push_back(std::sqrt(std::fmax(start.weight[k] - (k == 0 ? cosine_share : 0), 0.02)));
   }
-  for (size_t k = 0; k < kinds.size(); ++k) {
-    for (size_t i = 0; i < lobe_info(kinds[k]).shape.size(); ++i) {
-      log_shape[k * max_shape + i] = std::log(start.shape[k][i]);
+  for (const ShearedGgx<double>& s : start.shape) {
+    for (double alpha : {s.alpha_x, s.alpha_y}) {
+      shape.push_back(std::log(std::fmin(std::fmax(alpha, min_alpha), max_alpha)));
     }
+    shape.push_back(s.shear);
   }
+  // 16 covers all parameters of three lobes in one sweep.
+  auto* cost = new ceres::DynamicAutoDiffCostFunction<Divergence, 16>(
+      new Divergence(quadrature, lobes, cosine_share));
+  cost->AddParameterBlock(static_cast<int>(root.size()));
+  cost->AddParameterBlock(static_cast<int>(shape.size()));
+  cost->SetNumResiduals(static_cast<int>(quadrature.points.size()));
   ceres::Problem problem;
-  auto* cost = new ceres::DynamicAutoDiffCostFunction<Divergence, 4>(new Divergence(divergence));
-  cost->AddParameterBlock(static_cast<int>(weight_root.size()));
-  cost->AddParameterBlock(static_cast<int>(log_shape.size()));
-  cost->SetNumResiduals(static_cast<int>(points.size()));
-  problem.AddResidualBlock(cost, nullptr, weight_root.data(), log_shape.data());
-  for (size_t k = 0; k < kinds.size(); ++k) {
-    for (size_t i = 0; i < lobe_info(kinds[k]).shape.size(); ++i) {
-      const Parameter& parameter = shape_parameter(kinds[k], i);
-      const int index = static_cast<int>(k * max_shape + i);
-      problem.SetParameterLowerBound(log_shape.data(), index, std::log(parameter.min));
-      problem.SetParameterUpperBound(log_shape.data(), index, std::log(parameter.max));
-    }
+  problem.AddResidualBlock(cost, nullptr, root.data(), shape.data());
+  for (int i = 0; i < static_cast<int>(shape.size()); ++i) {
+    const bool shear = i % shape_size == 2;
+    problem.SetParameterLowerBound(shape.data(), i, shear ? -max_shear : std::log(min_alpha));
+    problem.SetParameterUpperBound(shape.data(), i, shear ? max_shear : std::log(max_alpha));
   }
-  if (!shapes || kinds.empty()) problem.SetParameterBlockConstant(log_shape.data());
+  if (!shapes) problem.SetParameterBlockConstant(shape.data());
   ceres::Solver::Options solver;
-  solver.linear_solver_type = ceres::DENSE_QR;
-  solver.max_num_iterations = 60;
+  solver.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+  solver.max_num_iterations = 50;
   solver.function_tolerance = 1e-4;
   solver.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
@@ -183,14 +200,47 @@ Proposal refine_proposal(const std::vector<QuadraturePoint>& points,
   if (!summary.IsSolutionUsable()) return start;
 
   Proposal result = start;
-  divergence.weights(weight_root.data(), result.weight.data());
-  for (size_t k = 0; k < kinds.size(); ++k) {
-    for (size_t i = 0; i < lobe_info(kinds[k]).shape.size(); ++i) {
-      result.shape[k][i] = std::exp(log_shape[k * max_shape + i]);
-    }
+  Divergence(quadrature, lobes, cosine_share).weights(root.data(), result.weight.data());
+  for (size_t k = 0; k < lobes; ++k) {
+    const double* p = shape.data() + k * shape_size;
+    result.shape[k] = {std::exp(p[0]), std::exp(p[1]), p[2]};
   }
-  return relative_variance(points, kinds, result) < relative_variance(points, kinds, start) ? result
-                                                                                            : start;
+  return relative_variance(quadrature, result) < relative_variance(quadrature, start) ? result
+                                                                                      : start;
+}
+
+std::vector<Proposal> refine_all(const std::vector<Quadrature>& quadratures,
+                                 std::vector<Proposal> start, bool shapes, double cosine_share) {
+  const size_t n = start.size();
+  if (!shapes) {
+    parallel_for(n, [&](size_t i) {
+      start[i] = refine_proposal(quadratures[i], start[i], false, cosine_share);
+    });
+    return start;
+  }
+  const size_t middle = n / 2;
+  std::vector<Proposal> candidates = other_starts(start[middle], cosine_share);
+  candidates.push_back(start[middle]);
+  parallel_for(candidates.size(), [&](size_t i) {
+    candidates[i] = refine_proposal(quadratures[middle], candidates[i], true, cosine_share);
+  });
+  start[middle] = *std::min_element(candidates.begin(), candidates.end(),
+                                    [&](const Proposal& a, const Proposal& b) {
+                                      return relative_variance(quadratures[middle], a) <
+                                             relative_variance(quadratures[middle], b);
+                                    });
+  parallel_for(2, [&](size_t side) {
+    if (side == 0) {
+      for (size_t i = middle; i-- > 0;) {
+        start[i] = refine_proposal(quadratures[i], start[i + 1], true, cosine_share);
+      }
+    } else {
+      for (size_t i = middle + 1; i < n; ++i) {
+        start[i] = refine_proposal(quadratures[i], start[i - 1], true, cosine_share);
+      }
+    }
+  });
+  return start;
 }
 
 }  // namespace gonio::detail
