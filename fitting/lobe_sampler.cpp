@@ -77,9 +77,8 @@ LobeSampler::Node LobeSampler::at(float theta_i) const noexcept {
 
 float LobeSampler::density(const Node& node, const glm::vec3& wi,
                            const glm::vec3& wo) const noexcept {
-  const glm::vec3 h = glm::normalize(wi + wo);
   float sum = node.weight[0] * cosine_pdf(wo.z);
-  for (int k = 0; k < lobes_; ++k) sum += node.weight[k + 1] * node.shape[k].pdf(wi, h);
+  for (int k = 0; k < lobes_; ++k) sum += node.weight[k + 1] * node.shape[k].pdf(wi, wo);
   return sum;
 }
 
@@ -94,12 +93,11 @@ std::optional<BsdfSample> LobeSampler::sample(const glm::vec3& wi,
   while (part < lobes_ && u.x >= below + node.weight[part]) below += node.weight[part++];
   constexpr float below_one = 1 - 0x1p-24f;
   const float rest = std::min(std::max((u.x - below) / node.weight[part], 0.0f), below_one);
-  const std::optional<glm::vec3> wo = part == 0
-                                          ? std::optional(cosine_sample(rest, u.y))
-                                          : node.shape[part - 1].sample(wi_diagram, rest, u.y);
-  if (!wo || !(wo->z > 0)) return std::nullopt;
-  const glm::vec3 wo_diagram = glm::normalize(*wo), wo_surface = frame.to_surface(wo_diagram);
-  const float density_here = density(node, wi_diagram, wo_diagram);
+  const glm::vec3 wo =
+      part == 0 ? cosine_sample(rest, u.y) : node.shape[part - 1].sample(wi_diagram, rest, u.y);
+  if (!(wo.z > 0)) return std::nullopt;
+  const glm::vec3 wo_surface = frame.to_surface(wo);
+  const float density_here = density(node, wi_diagram, wo);
   if (!(density_here > 0)) return std::nullopt;
   return BsdfSample{wo_surface, density_here,
                     table_->eval(wi, wo_surface) * (wo_surface.z / density_here)};

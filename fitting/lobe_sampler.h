@@ -50,7 +50,8 @@ class LobeSampler {
               const LobeSamplerOptions& options = {});
 
   /// Draws wo from two uniform numbers in [0, 1): u.x also chooses the part, and what is left of it
-  /// is stretched to [0, 1) again. Empty for wi.z <= 0 and for a draw below the horizon (weight 0).
+  /// is stretched to [0, 1) again. Empty for wi.z <= 0 and, with probability 0, for wo on the
+  /// horizon.
   std::optional<BsdfSample> sample(const glm::vec3& wi, const glm::vec2& u) const noexcept;
 
   /// The density with which sample() draws wo [1/sr]: the whole mixture, > 0 above the horizon.

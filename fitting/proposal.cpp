@@ -24,8 +24,9 @@ void for_half_vectors(const glm::dvec3& wi, const F& f) {
       const glm::dvec3 h(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
                          std::cos(theta));
       const double cos_d = glm::dot(wi, h);
-      if (!(cos_d > 1e-4)) continue;
-      f(h, reflect_about(wi, h), 4 * cos_d * std::sin(theta) * d_theta * 2 * pi<double> / n_phi);
+      const glm::dvec3 wo = reflect_about(wi, h);
+      if (!(cos_d > 1e-4 && wo.z > 0)) continue;
+      f(wo, 4 * cos_d * std::sin(theta) * d_theta * 2 * pi<double> / n_phi);
     }
   }
 }
@@ -35,8 +36,8 @@ glm::dvec3 incident(double theta_i) { return {std::sin(theta_i), 0, std::cos(the
 template <class T>
 T density(const Quadrature& quadrature, const Quadrature::Point& point, const T* weight,
           const ShearedGgx<T>* shape, size_t lobes) {
-  T sum = weight[0] * T(cosine_pdf(point.cos_o));
-  for (size_t k = 0; k < lobes; ++k) sum += weight[k + 1] * shape[k].pdf(quadrature.wi, point.h);
+  T sum = weight[0] * T(cosine_pdf(point.wo.z));
+  for (size_t k = 0; k < lobes; ++k) sum += weight[k + 1] * shape[k].pdf(quadrature.wi, point.wo);
   return sum;
 }
 
@@ -113,9 +114,9 @@ Quadrature quadrature(const BrdfFunction& f, double theta_i) {
   Quadrature result;
   result.wi = incident(theta_i);
   double total = 0;
-  for_half_vectors(result.wi, [&](const glm::dvec3& h, const glm::dvec3& wo, double solid_angle) {
-    const double value = wo.z > 0 ? luminance(f(glm::vec3(result.wi), glm::vec3(wo))) * wo.z : 0.0;
-    result.points.push_back({h, wo.z, solid_angle, value});
+  for_half_vectors(result.wi, [&](const glm::dvec3& wo, double solid_angle) {
+    const double value = luminance(f(glm::vec3(result.wi), glm::vec3(wo))) * wo.z;
+    result.points.push_back({wo, solid_angle, value});
     total += value * solid_angle;
   });
   if (!(total > 0)) result.points.clear();
@@ -138,9 +139,8 @@ Proposal albedo_proposal(const LobeModel& model, double theta_i, double cosine_s
       proposal.weight.push_back(0);
     }
     const LobeModel single{"", {lobe}};
-    for_half_vectors(wi, [&](const glm::dvec3&, const glm::dvec3& wo, double solid_angle) {
-      if (wo.z > 0)
-        proposal.weight[part] += luminance(glm::vec3(single.eval(wi, wo))) * wo.z * solid_angle;
+    for_half_vectors(wi, [&](const glm::dvec3& wo, double solid_angle) {
+      proposal.weight[part] += luminance(glm::vec3(single.eval(wi, wo))) * wo.z * solid_angle;
     });
   }
   double sum = 0;

@@ -19,10 +19,9 @@ struct Proposal {
 /// narrow lobes lie.
 struct Quadrature {
   struct Point {
-    glm::dvec3 h;
-    double cos_o;        ///< may be below 0: mixtures lose draws there
+    glm::dvec3 wo;       ///< above the horizon
     double solid_angle;  ///< sr of wo, both mirror halves
-    double target;       ///< L(f_r) cos_o over its integral; 0 below the horizon
+    double target;       ///< L(f_r) cos_o over its integral
   };
   glm::dvec3 wi;
   std::vector<Point> points;  ///< empty if f is 0 everywhere

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <glm/vec3.hpp>
-#include <optional>
 
 namespace gonio {
 
@@ -25,8 +24,8 @@ struct ShearedGgx {
   T alpha_y;  ///< width across it, > 0
   T shear;    ///< mean slope along the azimuth of wi; positive leans towards wi
 
-  /// Empty if the reflected direction is not above the horizon. u, v in [0, 1).
-  std::optional<glm::vec<3, T>> sample(const glm::vec<3, T>& wi, T u, T v) const {
+  /// A unit vector, wo.z >= 0. u, v in [0, 1).
+  glm::vec<3, T> sample(const glm::vec<3, T>& wi, T u, T v) const {
     using Vec = glm::vec<3, T>;
     const Vec seen = glm::normalize(Vec(alpha_x * wi.x, T(0), shear * wi.x + wi.z));
     const Vec t1(T(0), T(1), T(0)), t2(-seen.z, T(0), seen.x);  // t2 = seen x t1
@@ -38,15 +37,25 @@ struct ShearedGgx {
     const Vec n = p1 * t1 + p2 * t2 + p3 * seen;
     const T up = std::fmax(T(1e-12), n.z);
     const Vec h = glm::normalize(Vec(alpha_x * n.x + shear * up, alpha_y * n.y, up));
-    const Vec wo = reflect_about(wi, h);
-    if (!(wo.z > T(0))) return std::nullopt;
+    Vec wo = glm::normalize(reflect_about(wi, h));
+    wo.z = std::fabs(wo.z);
     return wo;
   }
 
-  /// Density of sample() per solid angle of wo [1/sr]:
-  /// 1 / (2 pi det(B) (|B wi| + (B wi)_z) |B^-T h|^4). wi and the half vector h in any scalar S.
+  /// Density of sample() per solid angle of wo [1/sr]. wo above the horizon; directions in any
+  /// scalar S.
   template <class S>
-  T pdf(const glm::vec<3, S>& wi, const glm::vec<3, S>& h) const {
+  T pdf(const glm::vec<3, S>& wi, const glm::vec<3, S>& wo) const {
+    T sum = unfolded_pdf(wi, glm::normalize(wi + wo));
+    if (wi.z > wo.z)
+      sum += unfolded_pdf(wi, glm::normalize(wi + glm::vec<3, S>(wo.x, wo.y, -wo.z)));
+    return sum;
+  }
+
+  /// Before mirroring, for the half vector h (h.z > 0):
+  /// 1 / (2 pi det(B) (|B wi| + (B wi)_z) |B^-T h|^4).
+  template <class S>
+  T unfolded_pdf(const glm::vec<3, S>& wi, const glm::vec<3, S>& h) const {
     using std::sqrt;
     const T x = (T(h.x) - shear * T(h.z)) / alpha_x, y = T(h.y) / alpha_y;
     const T length2 = x * x + y * y + T(h.z * h.z);
