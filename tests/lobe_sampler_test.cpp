@@ -78,9 +78,9 @@ TEST(LobeSampler, PdfIntegratesToOne) {
   for (Adaption adaption : all) {
     for (double theta : {0.0, 25.0, 60.0, 88.0}) {
       const glm::vec3 wi = direction(theta, 40);
-      EXPECT_NEAR(integrate([&](const glm::vec3& wo) { return sampler(adaption).pdf(wi, wo); }), 1,
-                  2e-3)
-          << theta;
+      const auto pdf = [&](const glm::vec3& wo) { return sampler(adaption).pdf(wi, wo); };
+      // Near the horizon a lobe of alpha = 0.1 is narrow in the cosine: finer cells.
+      EXPECT_NEAR(integrate(pdf, theta > 80 ? 3000 : 800), 1, 2e-3) << theta;
     }
   }
 }
@@ -283,20 +283,24 @@ TEST(ShearedGgx, DrawsFollowThePdf) {
   }
 }
 
-TEST(Proposal, RefiningReachesTheLobeThatMadeTheTarget) {
-  const LobeModel truth = parse_model("lambert:albedo=0.3+ggx:alpha=0.2,F0=1,F90=1");
+TEST(Proposal, RefiningFindsTheMixtureThatMadeTheTarget) {
+  const ShearedGgx<double> lobe{0.15, 0.3, 0.1};
+  const double theta_i = 0.7;
   const BrdfFunction f = [&](const glm::vec3& wi, const glm::vec3& wo) {
-    return truth.eval(wi, wo);
+    const double p =
+        0.4 * cosine_pdf(double(wo.z)) + 0.6 * lobe.pdf(glm::dvec3(wi), glm::dvec3(wo));
+    return glm::vec3(glm::dvec3(p / wo.z));
   };
-  const detail::Quadrature q = detail::quadrature(f, 0.5);
+  const detail::Quadrature q = detail::quadrature(f, theta_i);
   const detail::Proposal start = detail::albedo_proposal(
-      parse_model("lambert:albedo=0.3+ggx:alpha=0.6,F0=1,F90=1"), 0.5, 0.01);
+      parse_model("lambert:albedo=0.3+ggx:alpha=0.6,F0=1,F90=1"), theta_i, 0.01);
   const detail::Proposal found = detail::refine_proposal(q, start, true, 0.01);
   EXPECT_GT(detail::relative_variance(q, start), 0.5);
-  EXPECT_LT(detail::relative_variance(q, found), 0.002);
-  EXPECT_NEAR(found.shape[0].alpha_x, 0.2, 0.01);
-  EXPECT_NEAR(found.shape[0].alpha_y, 0.2, 0.01);
-  EXPECT_NEAR(found.shape[0].shear, 0, 0.02);
+  EXPECT_LT(detail::relative_variance(q, found), 1e-3);
+  EXPECT_NEAR(found.weight[1], 0.6, 0.006);
+  EXPECT_NEAR(found.shape[0].alpha_x, 0.15, 0.0015);
+  EXPECT_NEAR(found.shape[0].alpha_y, 0.3, 0.003);
+  EXPECT_NEAR(found.shape[0].shear, 0.1, 0.001);
 }
 
 }  // namespace
