@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <mutex>
+#include <optional>
+#include <set>
 #include <string>
 
 #include <gonio/brdf/parallel.h>
 #include <gonio/mapping/error.h>
-#include <gonio/mapping/fit.h>
+#include <gonio/mapping/diagram_fit.h>
 
 namespace gonio {
 namespace {
@@ -19,15 +22,16 @@ constexpr double largest_angle = 89.5 * degree;
 constexpr double smallest_gap = 0.1 * degree;
 
 DiagramGrid build_diagram(const BrdfTable& table, double theta_i, const StackOptions& options) {
-  DiagramGrid grid = fit_diagram(
-      [&](Polar<double> at) { return transfer_density(table, theta_i, at); }, Azimuth::half,
-      {options.meridians, options.parallels, options.tolerance / 2});
-  const bool black = std::all_of(grid.density.begin(), grid.density.end(), [](double d) { return d == 0; });
-  if (!black) grid = Diagram<double>(grid).grid();
-  const double share = black ? 1 : cosine_share;
+  const FitLimits limits{options.meridians, options.parallels, options.tolerance / 2};
+  DiagramGrid grid = fit_diagram([&](Polar<double> at) { return transfer_density(table, theta_i, at); },
+                                 Azimuth::half, limits);
+  const auto cosine = [](Polar<double> at) { return (1 - at.r * at.r) / pi<double>; };
+  if (std::all_of(grid.density.begin(), grid.density.end(), [](double d) { return d == 0; }))
+    return fit_diagram(cosine, Azimuth::half, limits);
+  grid = Diagram<double>(grid).grid();
   for (std::size_t i = 0; i < grid.phi.size(); ++i)
     for (std::size_t j = 0; j < grid.r.size(); ++j)
-      grid.at(i, j) = (1 - share) * grid.at(i, j) + share * (1 - grid.r[j] * grid.r[j]) / pi<double>;
+      grid.at(i, j) = (1 - cosine_share) * grid.at(i, j) + cosine_share * cosine({grid.r[j], grid.phi[i]});
   return grid;
 }
 
@@ -57,6 +61,120 @@ double interpolation_relvar(const BrdfTable& table, double theta_i, const Built&
   return sum > 0 ? std::max(0.0, sum2 * side * side / (sum * sum) - 1) : 0;
 }
 
+/// Diagrams by incident angle, grown until nothing fails or a limit is met.
+class Growth {
+ public:
+  Growth(const BrdfTable& table, const StackOptions& options, const Progress& progress)
+      : table_(table), options_(options), progress_(progress) {
+    constexpr std::size_t first = 7;
+    std::vector<double> start;
+    const std::size_t count = std::min(limit(), first);
+    for (std::size_t k = 0; k < count; ++k)
+      start.push_back(largest_angle * static_cast<double>(k) / static_cast<double>(count - 1));
+    build(start);
+    while (split_worst()) {
+    }
+  }
+
+  bool out_of_bytes() const { return out_of_bytes_; }
+
+  /// The largest estimate of relvar between two angles.
+  double worst() const {
+    double worst = 0;
+    for (const auto& [angle, error] : error_) worst = std::max(worst, error);
+    return worst;
+  }
+
+  StackGrid take() {
+    StackGrid stack;
+    for (auto& [angle, entry] : built_) {
+      stack.theta_i.push_back(angle);
+      stack.diagrams.push_back(std::move(entry.grid));
+    }
+    return stack;
+  }
+
+ private:
+  std::size_t limit() const { return static_cast<std::size_t>(options_.incident); }
+
+  void build(const std::vector<double>& angles) {
+    parallel_for(angles.size(), [&](std::size_t k) {
+      DiagramGrid grid = build_diagram(table_, angles[k], options_);
+      Diagram<double> diagram(grid);
+      const std::lock_guard<std::mutex> lock(mutex_);
+      bytes_ += built_.emplace(angles[k], Built{std::move(grid), std::move(diagram)}).first->second.bytes();
+      if (progress_)
+        progress_(std::min(1.0, std::max(static_cast<double>(built_.size()) / static_cast<double>(limit()),
+                                         static_cast<double>(bytes_) / static_cast<double>(options_.bytes))));
+    });
+  }
+
+  void estimate_errors() {
+    std::vector<double> unknown;
+    for (auto it = built_.begin(); std::next(it) != built_.end(); ++it)
+      if (!error_.count(it->first)) unknown.push_back(it->first);
+    constexpr double probes[] = {0.25, 0.5, 0.75};
+    constexpr std::size_t count = std::size(probes);
+    std::vector<double> estimate(unknown.size() * count, 0.0);
+    parallel_for(estimate.size(), [&](std::size_t k) {
+      const auto a = built_.find(unknown[k / count]);
+      const auto b = std::next(a);
+      const double alpha = probes[k % count];
+      estimate[k] = interpolation_relvar(table_, (1 - alpha) * a->first + alpha * b->first, a->second, b->second, alpha);
+    });
+    for (std::size_t k = 0; k < unknown.size(); ++k) {
+      const auto worst = std::max_element(estimate.begin() + k * count, estimate.begin() + (k + 1) * count);
+      error_[unknown[k]] = *worst;
+    }
+  }
+
+  /// Splits the intervals with the largest error, a fixed few at a time, so that the outcome is the
+  /// same however many threads share the work. False when nothing is left to split or a limit is met.
+  bool split_worst() {
+    constexpr std::size_t batch = 4;
+    estimate_errors();
+    std::vector<std::pair<double, double>> order;  // (-error, lower end)
+    for (const auto& [angle, error] : error_) {
+      const bool wide = std::next(built_.find(angle))->first - angle > 2 * smallest_gap;
+      if (error > options_.tolerance && wide && !settled_.count(angle)) order.emplace_back(-error, angle);
+    }
+    std::sort(order.begin(), order.end());
+    order.resize(std::min({order.size(), batch, limit() - built_.size()}));
+    if (order.empty()) return false;
+
+    std::vector<double> middles;
+    for (const auto& [error, angle] : order)
+      middles.push_back((angle + std::next(built_.find(angle))->first) / 2);
+    build(middles);
+    while (bytes_ > options_.bytes && !middles.empty()) {  // what does not fit goes, the least useful first
+      const auto last = built_.find(middles.back());
+      bytes_ -= last->second.bytes();
+      built_.erase(last);
+      middles.pop_back();
+      out_of_bytes_ = true;
+    }
+    for (std::size_t k = 0; k < middles.size(); ++k) {
+      // Where a diagram of its own is hardly better than the interpolation was, more angles do not
+      // help: the size of the diagram or the noise of the table is the limit there.
+      const Built& own = built_.at(middles[k]);
+      const double floor = interpolation_relvar(table_, middles[k], own, own, 0);
+      if (floor > -order[k].first / 1.5) settled_.insert({order[k].second, middles[k]});
+      error_.erase(order[k].second);
+    }
+    return !out_of_bytes_;
+  }
+
+  const BrdfTable& table_;
+  const StackOptions& options_;
+  const Progress& progress_;
+  std::mutex mutex_;
+  std::map<double, Built> built_;
+  std::map<double, double> error_;  // by the lower end of each interval
+  std::set<double> settled_;        // lower ends of intervals that splitting does not improve
+  std::size_t bytes_ = 0;
+  bool out_of_bytes_ = false;
+};
+
 }  // namespace
 
 double transfer_density(const BrdfTable& table, double theta_i, Polar<double> at) {
@@ -70,76 +188,23 @@ double transfer_density(const BrdfTable& table, double theta_i, Polar<double> at
 StackGrid build_stack(const BrdfTable& table, const StackOptions& options, const Progress& progress) {
   if (options.incident < 2)
     throw Error("stack: incident: found " + std::to_string(options.incident) + ", expected at least 2");
-  const std::size_t limit = static_cast<std::size_t>(options.incident);
-
-  std::mutex mutex;
-  std::map<double, Built> built;
-  const auto build_all = [&](const std::vector<double>& angles) {
-    parallel_for(angles.size(), [&](std::size_t k) {
-      DiagramGrid grid = build_diagram(table, angles[k], options);
-      Diagram<double> diagram(grid);
-      const std::lock_guard<std::mutex> lock(mutex);
-      built.emplace(angles[k], Built{std::move(grid), std::move(diagram)});
-      if (progress) progress(std::min(1.0, static_cast<double>(built.size()) / static_cast<double>(limit)));
-    });
-  };
-  std::vector<double> start;
-  const std::size_t first = std::min<std::size_t>(limit, 7);
-  for (std::size_t k = 0; k < first; ++k)
-    start.push_back(largest_angle * static_cast<double>(k) / static_cast<double>(first - 1));
-  build_all(start);
-
-  // Split the intervals with the largest error, a fixed few at a time: the outcome is the same
-  // however many threads share the work.
-  constexpr std::size_t batch = 4;
-  std::map<double, double> error;  // by the lower end of each interval
-  const auto bytes = [&] {
-    std::size_t sum = 0;
-    for (const auto& [angle, entry] : built) sum += entry.bytes();
-    return sum;
-  };
-  while (built.size() < limit && bytes() < options.bytes) {
-    std::vector<double> lower, unknown;
-    for (auto it = built.begin(); std::next(it) != built.end(); ++it)
-      if (!error.count(it->first)) unknown.push_back(it->first);
-    std::vector<double> estimate(unknown.size());
-    parallel_for(unknown.size(), [&](std::size_t k) {
-      const auto a = built.find(unknown[k]);
-      const auto b = std::next(a);
-      estimate[k] = b->first - a->first < 2 * smallest_gap
-                        ? 0
-                        : interpolation_relvar(table, (a->first + b->first) / 2, a->second, b->second, 0.5);
-    });
-    for (std::size_t k = 0; k < unknown.size(); ++k) error[unknown[k]] = estimate[k];
-
-    std::vector<std::pair<double, double>> order;  // (-error, lower end)
-    for (const auto& [angle, value] : error)
-      if (value > options.tolerance) order.emplace_back(-value, angle);
-    std::sort(order.begin(), order.end());
-    order.resize(std::min({order.size(), batch, limit - built.size()}));
-    if (order.empty()) break;
-    std::vector<double> middles;
-    for (const auto& [value, angle] : order) {
-      middles.push_back((angle + std::next(built.find(angle))->first) / 2);
-      error.erase(angle);
-    }
-    build_all(middles);
-    // Where a diagram of its own is hardly better than the interpolation, more angles do not help:
-    // the diagram's size or the noise of the table is the limit there.
-    for (std::size_t k = 0; k < middles.size(); ++k) {
-      const Built& own = built.at(middles[k]);
-      const double floor = interpolation_relvar(table, middles[k], own, own, 0);
-      if (floor > -order[k].first / 1.5) error[order[k].second] = error[middles[k]] = 0;
+  if (!(options.tolerance > 0))
+    throw Error("stack: tolerance: found " + std::to_string(options.tolerance) + ", expected more than 0");
+  // When the memory does not suffice for the tolerance, diagrams of that quality leave too few of
+  // them: coarser ones at more angles may do better. The tolerance doubles as long as they do.
+  StackOptions attempt = options;
+  std::optional<StackGrid> best;
+  double best_error = std::numeric_limits<double>::infinity();
+  for (bool improved = true; improved; attempt.tolerance *= 2) {
+    Growth growth(table, attempt, progress);
+    improved = growth.worst() < best_error && growth.out_of_bytes();
+    if (growth.worst() < best_error) {
+      best_error = growth.worst();
+      best = growth.take();
     }
   }
   if (progress) progress(1);
-
-  StackGrid stack;
-  for (auto& [angle, entry] : built) {
-    stack.theta_i.push_back(angle);
-    stack.diagrams.push_back(std::move(entry.grid));
-  }
-  return stack;
+  return *best;
 }
 
 }  // namespace gonio

@@ -9,10 +9,10 @@ namespace gonio {
 
 /// The size of a stack: what ends its growth, whichever comes first.
 struct StackOptions {
-  int incident = 128;              ///< at most this many incident angles, >= 2
+  int incident = 192;              ///< at most this many incident angles, >= 2
   int meridians = 40;              ///< at most this many in a diagram, >= 2
   int parallels = 40;              ///< at most this many in a diagram, >= 2
-  std::size_t bytes = 480 * 1024;  ///< at most about this much memory (a started batch is finished)
+  std::size_t bytes = 480 * 1024;  ///< at most this much memory, once there are seven diagrams
   double tolerance = 0.003;        ///< relative variance that is good enough, at and between all angles
 };
 
@@ -29,8 +29,9 @@ inline constexpr double cosine_share = 1e-3;
 double transfer_density(const BrdfTable& table, double theta_i, Polar<double> at);
 
 /// Builds the diagrams of a table: each fitted to its incident angle (fit_diagram()), the angles
-/// placed where displacement between their neighbours fails, measured by the relative variance half
-/// way between them. Uses all cores; the result does not depend on their number.
+/// placed where displacement between their neighbours fails, measured by the relative variance at
+/// three angles between them. If the bytes do not suffice for the tolerance, it is relaxed as long as that
+/// lowers the worst error. Deterministic. Uses all cores; the result does not depend on their number.
 ///
 /// A table that reflects nothing at an angle gets a cosine lobe there.
 /// @throws Error for sizes out of range.

@@ -1,7 +1,7 @@
 #include <gonio/brdf/atomic_file.h>
 #include <gonio/brdf/bytes.h>
-#include <gonio/brdf/grid.h>
 #include <gonio/brdf/fast_atan2.h>
+#include <gonio/brdf/grid.h>
 #include <gonio/brdf/interpolate.h>
 #include <gonio/brdf/repair.h>
 #include <gonio/mapping/error.h>
@@ -14,9 +14,6 @@ namespace {
 
 constexpr float pi = 3.14159265358979323846f;
 const std::string magic = "NVIDIA ARC MBSDF V1\n";
-
-// A finer grid than this is no measurement; the bound keeps the products below within 64 bits.
-constexpr std::uint32_t max_dimension = 1u << 14;
 
 struct Block {
   int n_theta = 0, n_phi = 0, channels = 0;
@@ -37,9 +34,9 @@ bool parse_block(ByteReader& reader, const std::string& name, Block& block,
     problems.push_back({name + " type", std::to_string(n[0]), "0 (scalar) or 1 (RGB)", true});
   }
   const auto check = [&](const char* field, std::uint32_t value) {
-    if (value < 1 || value > max_dimension) {
+    if (value < 1 || value > static_cast<std::uint32_t>(max_grid_side)) {
       problems.push_back({name + " " + field, std::to_string(value),
-                          "1 to " + std::to_string(max_dimension), true});
+                          "1 to " + std::to_string(max_grid_side), true});
     }
   };
   check("n_theta", n[1]);
@@ -138,11 +135,13 @@ GridFile read_mbsdf(const std::filesystem::path& path) {
 namespace {
 
 void check_shape(const GridFile& file) {
-  if (file.n_theta_in < 1 || file.n_theta_out < 1 || file.n_phi < 1 ||
+  const auto side = [](int n) { return n >= 1 && n <= max_grid_side; };
+  if (!side(file.n_theta_in) || !side(file.n_theta_out) || !side(file.n_phi) ||
       (file.channels != 1 && file.channels != 3)) {
     throw Error("dimensions: found " + std::to_string(file.n_theta_in) + " x " +
                 std::to_string(file.n_theta_out) + " x " + std::to_string(file.n_phi) + " x " +
-                std::to_string(file.channels) + ", expected positive sizes and 1 or 3 channels");
+                std::to_string(file.channels) +
+                ", expected sizes of 1 to 16384 and 1 or 3 channels");
   }
   const std::size_t count =
       static_cast<std::size_t>(file.n_theta_in) * file.n_theta_out * file.n_phi * file.channels;

@@ -21,6 +21,9 @@ struct GridFile {
   bool has_transmission = false;  ///< the file also had a transmission part, which is not read
 };
 
+/// Most thetas or phis that a grid may have.
+inline constexpr int max_grid_side = 1 << 14;
+
 /// Reads the reflection part of an MBSDF file, scalar or RGB. Transmission is skipped.
 /// @throws Error if the file cannot be read, is damaged, or holds no reflection.
 GridFile read_mbsdf(const std::filesystem::path& path);

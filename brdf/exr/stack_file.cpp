@@ -13,6 +13,7 @@
 #include <ImfPartType.h>
 #include <ImfStringAttribute.h>
 #include <ImfTestFile.h>
+#include <ImfVersion.h>
 
 #include <fstream>
 #include <vector>

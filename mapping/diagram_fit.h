@@ -21,7 +21,8 @@ struct FitLimits {
 ///    where it bends (two coarse rounds, then the full one).
 /// 2. Of the reference lines those are kept, per axis, that minimise the summed squared error of
 ///    linear interpolation relative to the density: an exact optimum by dynamic programming, for
-///    every number of lines at once. The smallest M x N within the tolerance is taken.
+///    every number of lines at once. The smallest M x N within the tolerance is taken; where
+///    step 3 then falls short of it, a larger one.
 /// 3. The densities at the crossings are fitted by Richardson-Lucy (EM) steps, which keep them
 ///    positive, conserve the mass and descend on the divergence. Interpolating the function at the
 ///    crossings would leave several times its variance. The pole is one value for all meridians.

@@ -1,0 +1,57 @@
+#include <gonio/brdf/proof/measure.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <gonio/brdf/proof/random.h>
+
+namespace gonio::proof {
+
+Quality measure(const Subject& subject, double theta_i, const MeasureOptions& options) {
+  const glm::vec3 wi(static_cast<float>(std::sin(theta_i)), 0, static_cast<float>(std::cos(theta_i)));
+  Quality q{};
+  q.theta_i = theta_i;
+
+  Random random(options.seed);
+  double sum = 0, sum2 = 0, largest = 0;
+  std::uint64_t empty = 0;
+  const float side = static_cast<float>(options.grid);
+  for (int i = 0; i < options.grid; ++i) {
+    for (int j = 0; j < options.grid; ++j) {
+      const glm::vec2 jitter = random.pair();
+      const auto s = subject.sample(wi, {(static_cast<float>(i) + jitter.x) / side, (static_cast<float>(j) + jitter.y) / side});
+      if (!s) {
+        ++empty;
+        continue;
+      }
+      const double w = luminance(s->weight);
+      sum += w;
+      sum2 += w * w;
+      largest = std::max(largest, w);
+      q.albedo += glm::dvec3(s->weight);
+    }
+  }
+  const double count = static_cast<double>(options.grid) * options.grid;
+  q.albedo /= count;
+  q.invalid_fraction = static_cast<double>(empty) / count;
+  if (sum > 0) {
+    q.relvar = std::max(0.0, sum2 * count / (sum * sum) - 1);
+    q.max_weight = largest * count / sum;
+  }
+
+  const auto value = [&](const glm::vec3& wo) { return subject.f_r(wi, wo) * wo.z; };
+  const Density pdf = [&](const glm::vec3& wo) { return subject.pdf(wi, wo); };
+  const double mean = sum > 0 ? sum / count : 1;
+  const Bins bins = Bins::adapted([&](const glm::vec3& wo) { return pdf(wo) + luminance(value(wo)) / mean; });
+  q.albedo_table = bins.integrate_rgb(value);
+  q.chi2 = chi_square(
+      [&](std::uint64_t) -> std::optional<glm::vec3> {
+        const auto s = subject.sample(wi, random.pair());
+        return s ? std::optional(s->wo) : std::nullopt;
+      },
+      pdf, bins, options.chi2_draws);
+  q.pdf_integral = q.chi2.pdf_integral;
+  return q;
+}
+
+}  // namespace gonio::proof

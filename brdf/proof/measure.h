@@ -1,0 +1,50 @@
+#pragma once
+
+#include <functional>
+#include <glm/vec3.hpp>
+#include <optional>
+
+#include <gonio/brdf/proof/chi_square.h>
+#include <gonio/brdf/sampler.h>
+
+namespace gonio::proof {
+
+/// A sampler under test, whatever its type: what Sampler offers, as functions. Frames and measures
+/// are those of Sampler. `f_r` is the BRDF that the weights ought to represent.
+struct Subject {
+  std::function<std::optional<BsdfSample>(const glm::vec3& wi, const glm::vec2& u)> sample;
+  std::function<double(const glm::vec3& wi, const glm::vec3& wo)> pdf;
+  std::function<glm::vec3(const glm::vec3& wi, const glm::vec3& wo)> f_r;
+};
+
+/// A subject of anything with Sampler's interface. The sampler must outlive it.
+template <class S>
+Subject subject_of(const S& sampler) {
+  return {[&](const glm::vec3& wi, const glm::vec2& u) { return sampler.sample(wi, u); },
+          [&](const glm::vec3& wi, const glm::vec3& wo) { return static_cast<double>(sampler.pdf(wi, wo)); },
+          [&](const glm::vec3& wi, const glm::vec3& wo) { return sampler.eval(wi, wo); }};
+}
+
+struct MeasureOptions {
+  int grid = 256;                        ///< relvar is measured on grid x grid jittered points of the square
+  std::uint64_t chi2_draws = 1u << 18;   ///< independent draws of the goodness-of-fit test
+  std::uint32_t seed = 1;
+};
+
+/// How well a sampler does at one incident angle.
+struct Quality {
+  double theta_i;             ///< [rad]
+  double relvar;              ///< Var[w] / E[w]^2 of the luminance weight w; 0 is perfect; empty draws count as 0
+  double max_weight;          ///< the largest luminance weight over the mean one
+  double invalid_fraction;    ///< share of empty draws
+  double pdf_integral;        ///< by quadrature of pdf(), no draw involved
+  glm::dvec3 albedo;          ///< mean weight: the albedo as the sampler estimates it
+  glm::dvec3 albedo_table;    ///< the integral of f_r cos theta_o by quadrature, no sampler involved
+  ChiSquare chi2;             ///< of sample() against pdf()
+};
+
+/// Measures a sampler at theta_i [rad] in [0, pi/2). Deterministic for a seed. The bins and the
+/// quadrature are adapted to both the pdf and f_r cos theta_o.
+Quality measure(const Subject& subject, double theta_i, const MeasureOptions& options = {});
+
+}  // namespace gonio::proof

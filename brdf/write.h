@@ -1,0 +1,33 @@
+#pragma once
+
+#include <gonio/brdf/grid.h>
+#include <gonio/brdf/merl.h>
+#include <gonio/brdf/table.h>
+
+#include <filesystem>
+
+namespace gonio {
+
+/// Any table in the layout of MERL: each cell holds the mean of f_r at 2 x 2 x 2 points, weighted
+/// with both cosines; cells with no pair of directions above the horizon get -1. Uses all cores.
+///
+/// With 360 phi_d bins the directional albedos of measured materials keep within 1.2 % up to 85
+/// degrees. The common layout with 180 bins is reciprocal by construction: a cell holds the mean of
+/// f_r(wi, wo) and f_r(wo, wi), and measured materials, which are not reciprocal, change albedo by
+/// up to 20 % near grazing.
+/// @throws Error if n_phi_d is neither 180 nor 360.
+MerlFile sample_as_merl(const BrdfTable& table, int n_phi_d = 360);
+
+/// Any table on the grid of MBSDF, sampled at the cell centres with wo on the side phi >= 0. Uses
+/// all cores. @throws Error if a size is not in 1 to 16384.
+GridFile sample_as_grid(const BrdfTable& table, int n_theta, int n_phi);
+
+/// sample_as_merl and write_merl.
+void write_table_as_merl(const BrdfTable& table, const std::filesystem::path& path,
+                         int n_phi_d = 360);
+
+/// sample_as_grid and write_mbsdf.
+void write_table_as_mbsdf(const BrdfTable& table, const std::filesystem::path& path,
+                          int n_theta = 90, int n_phi = 180);
+
+}  // namespace gonio

@@ -1,0 +1,28 @@
+// Stores the stack of the table named by the argument beside it and samples it as loaded; then
+// evaluates a sum of analytic lobes.
+#include <gonio/brdf/build.h>
+#include <gonio/brdf/exr/stack_file.h>
+#include <gonio/brdf/sampler.h>
+#include <gonio/fitting/model.h>
+
+#include <cstdio>
+#include <memory>
+#include <string>
+
+int main(int argc, char** argv) {
+  if (argc != 2) return 2;
+  const auto table = std::make_shared<const gonio::BrdfTable>(gonio::load_table(argv[1]));
+  const std::string path = std::string(argv[1]) + ".exr";
+  gonio::StackFile file;
+  file.diagrams = gonio::build_stack(*table);
+  file.name = table->info().name;
+  gonio::save_stack(path, file);
+
+  const glm::vec3 wi(0.6f, 0.0f, 0.8f);
+  const gonio::Sampler sampler(table, gonio::load_stack(path).diagrams);
+  const auto s = sampler.sample(wi, {0.25f, 0.5f});
+  const gonio::LobeModel model = gonio::parse_model("ggx:alpha=0.2+lambert:albedo=0.5");
+  const double f = model.eval(glm::dvec3(wi), glm::dvec3(0, 0, 1)).y;
+  std::printf("pdf %g, f_r of the lobes %g 1/sr\n", s ? s->pdf : 0, f);
+  return s && s->pdf > 0 && f > 0 ? 0 : 1;
+}

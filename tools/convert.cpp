@@ -1,0 +1,142 @@
+#include <gonio/brdf/exr/stack_file.h>
+#include <gonio/brdf/sniff.h>
+#include <gonio/brdf/write.h>
+#include <gonio/mapping/error.h>
+#include <gonio/tools/convert.h>
+#include <gonio/tools/options.h>
+#include <gonio/tools/progress.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <tuple>
+
+namespace gonio {
+namespace {
+
+constexpr int colour_side = 16;
+
+struct Options {
+  std::string in, out, grid;
+  StackOptions stack;
+  CellPolicies policies;
+};
+
+/// Options that would have no effect are refused.
+void refuse(const CLI::App& verb, std::initializer_list<const char*> options,
+            const std::string& why) {
+  for (const char* option : options) {
+    if (verb.count(option) > 0)
+      throw Error(std::string(option) + ": found one, expected none: " + why);
+  }
+}
+
+void refuse_policies(const CLI::App& verb, const std::string& why) {
+  refuse(verb, {"--negative", "--nonfinite", "--missing"}, why);
+}
+
+void table_to_stack(const Options& options) {
+  StackFile file;
+  {
+    ProgressLine progress("building the stack of " + options.in);
+    const BrdfTable table = load_table(options.in, options.policies);
+    const Stack<float> stack(
+        build_stack(table, options.stack, [&](double share) { progress.update(share); }),
+        Interpolation::displacement);
+    file.diagrams = stack.grid();
+    file.colour = Colour::from_table(table, stack, colour_side);
+    file.name = table.info().name;
+    file.source = std::filesystem::path(options.in).filename().string();
+  }
+  save_stack(options.out, file);
+}
+
+void convert_stack(const CLI::App& verb, const Options& options, const std::string& extension) {
+  if (extension != ".exr") {
+    throw Error(options.in +
+                ": format: found a stack file, expected a table (MERL, RGL or MBSDF) to write " +
+                extension);
+  }
+  refuse(verb, {"--incident", "--grid", "--bytes", "--tolerance"},
+         "a stack file keeps its diagrams");
+  refuse_policies(verb, "a stack file has no such cells");
+  save_stack(options.out, load_stack(options.in));
+}
+
+void table_to_merl(const CLI::App& verb, const Options& options) {
+  const ProgressLine progress("writing " + options.out);
+  if (sniff_format(options.in) == TableFormat::merl) {
+    refuse_policies(verb, "MERL to MERL keeps the values as they are stored");
+    write_merl(options.out, read_merl(options.in));
+  } else {
+    write_table_as_merl(load_table(options.in, options.policies), options.out);
+  }
+}
+
+void table_to_mbsdf(const CLI::App& verb, const Options& options) {
+  const ProgressLine progress("writing " + options.out);
+  if (sniff_format(options.in) == TableFormat::mbsdf && options.grid.empty()) {
+    refuse_policies(verb, "MBSDF to MBSDF without --grid keeps the values as they are stored");
+    write_mbsdf(options.out, read_mbsdf(options.in));
+    return;
+  }
+  const auto [thetas, phis] = parse_grid("--grid", options.grid.empty() ? "90x180" : options.grid);
+  write_table_as_mbsdf(load_table(options.in, options.policies), options.out, thetas, phis);
+}
+
+void convert(const CLI::App& verb, Options& options) {
+  const std::string extension = checked_extension(options.out, {".exr", ".binary", ".mbsdf"});
+  if (is_exr(options.in)) {
+    convert_stack(verb, options, extension);
+    return;
+  }
+  if (extension == ".exr") {
+    if (!options.grid.empty()) {
+      std::tie(options.stack.meridians, options.stack.parallels) =
+          parse_grid("--grid", options.grid);
+    }
+    table_to_stack(options);
+    return;
+  }
+  refuse(verb, {"--incident", "--bytes", "--tolerance"}, "only a stack file has diagrams");
+  if (extension == ".binary") {
+    refuse(verb, {"--grid"}, "the cells of MERL are fixed");
+    table_to_merl(verb, options);
+  } else {
+    table_to_mbsdf(verb, options);
+  }
+}
+
+}  // namespace
+
+void add_convert(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  StackOptions& stack = options->stack;
+  CLI::App* verb = app.add_subcommand(
+      "convert", "A table as a stack file (.exr), MERL (.binary) or MBSDF (.mbsdf)");
+  verb->add_option("IN", options->in,
+                   "MERL, RGL or MBSDF table, or stack file, known by its content")
+      ->required();
+  verb->add_option("OUT", options->out,
+                   "File to write; its extension, .exr, .binary or .mbsdf, is its format")
+      ->required();
+  verb->add_option("--grid", options->grid,
+                   ".exr: at most M meridians and N parallels in a diagram [" +
+                       std::to_string(stack.meridians) + "x" + std::to_string(stack.parallels) +
+                       "]; .mbsdf: M thetas and N phis [90x180]")
+      ->type_name("MxN");
+  add_stack_options(*verb, stack);
+  add_cell_policies(*verb, options->policies);
+  verb->footer(
+      "MERL to MERL, and MBSDF to MBSDF without --grid, keep the values as they are stored.\n"
+      "Anything else is sampled at the cell centres of OUT.\n\n"
+      "Examples:\n"
+      "  gonio convert chrome.binary chrome.exr\n"
+      "  gonio convert satin.bsdf small.exr --grid 16x16 --bytes 64KiB\n"
+      "  gonio convert satin.bsdf satin.binary\n"
+      "  gonio convert satin.bsdf satin.mbsdf --grid 45x90");
+  verb->callback([options, verb] { convert(*verb, *options); });
+}
+
+}  // namespace gonio

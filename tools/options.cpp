@@ -1,0 +1,96 @@
+#include <gonio/mapping/error.h>
+#include <gonio/tools/options.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+
+namespace gonio {
+namespace {
+
+constexpr const char* policy_options[] = {"--negative", "--nonfinite", "--missing"};
+
+}  // namespace
+
+const char* to_string(CellPolicy policy) noexcept {
+  switch (policy) {
+    case CellPolicy::zero:
+      return "zero";
+    case CellPolicy::fill:
+      return "fill";
+    default:
+      return "reject";
+  }
+}
+
+void add_cell_policies(CLI::App& verb, CellPolicies& policies) {
+  const auto add = [&](const std::string& name, CellPolicy& policy, const std::string& cells) {
+    const auto assign = [name, &policy](const std::string& text) {
+      for (const CellPolicy known : {CellPolicy::zero, CellPolicy::fill, CellPolicy::reject}) {
+        if (text != to_string(known)) continue;
+        policy = known;
+        return;
+      }
+      throw CLI::ValidationError(name, "found '" + text + "', expected zero, fill or reject");
+    };
+    verb.add_option_function<std::string>(name, assign, cells)
+        ->type_name("zero|fill|reject")
+        ->default_str(to_string(policy))
+        ->group("Cells that cannot be a BRDF value");
+  };
+  add(policy_options[0], policies.negative, "Cells with a negative value");
+  add(policy_options[1], policies.nonfinite, "Cells with NaN or infinity");
+  add(policy_options[2], policies.missing, "Cells marked as not measured (MERL: negative)");
+}
+
+bool cell_policies_given(const CLI::App& verb) {
+  return std::any_of(std::begin(policy_options), std::end(policy_options),
+                     [&](const char* name) { return verb.count(name) > 0; });
+}
+
+void add_stack_options(CLI::App& verb, StackOptions& stack) {
+  const char* const group = "Size of a stack: it grows until one of these is met";
+  verb.add_option("--incident", stack.incident, "At most this many incident angles")
+      ->capture_default_str()
+      ->group(group);
+  verb.add_option("--bytes", stack.bytes, "At most this much memory for the diagrams, such as 1MiB")
+      ->transform(CLI::AsSizeValue(true))
+      ->type_name("SIZE")
+      ->default_str(std::to_string(stack.bytes / 1024) + "KiB")
+      ->group(group);
+  verb.add_option("--tolerance", stack.tolerance, "Relative variance that is good enough")
+      ->capture_default_str()
+      ->group(group);
+}
+
+std::pair<int, int> parse_grid(const std::string& option, const std::string& text) {
+  int m = 0, n = 0;
+  const char* const end = text.data() + text.size();
+  const auto first = std::from_chars(text.data(), end, m);
+  if (first.ec == std::errc() && first.ptr != end && *first.ptr == 'x') {
+    const auto second = std::from_chars(first.ptr + 1, end, n);
+    if (second.ec == std::errc() && second.ptr == end && m > 0 && n > 0) return {m, n};
+  }
+  throw CLI::ValidationError(option, "found '" + text + "', expected two numbers such as 40x30");
+}
+
+std::string checked_extension(const std::filesystem::path& output,
+                              const std::vector<std::string>& extensions) {
+  std::string extension = output.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (std::find(extensions.begin(), extensions.end(), extension) == extensions.end()) {
+    std::string expected;
+    for (const std::string& known : extensions) expected += (expected.empty() ? "" : ", ") + known;
+    throw Error(output.string() + ": extension: found " + (extension.empty() ? "none" : extension) +
+                ", expected one of " + expected);
+  }
+  const std::filesystem::path folder = output.parent_path();
+  std::error_code code;
+  if (!folder.empty() && !std::filesystem::is_directory(folder, code)) {
+    throw Error(output.string() + ": folder: found none, expected " + folder.string());
+  }
+  return extension;
+}
+
+}  // namespace gonio

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <gonio/brdf/build.h>
+
+#include <CLI/App.hpp>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace gonio {
+
+/// The options --negative, --nonfinite and --missing of a verb that loads tables.
+/// `policies` must outlive the parsing.
+void add_cell_policies(CLI::App& verb, CellPolicies& policies);
+
+/// True if one of them was given.
+bool cell_policies_given(const CLI::App& verb);
+
+/// "zero", "fill" or "reject".
+const char* to_string(CellPolicy policy) noexcept;
+
+/// The options --incident, --bytes and --tolerance of a verb that builds stacks.
+/// `stack` must outlive the parsing.
+void add_stack_options(CLI::App& verb, StackOptions& stack);
+
+/// Two positive numbers, as in "40x30". @throws CLI::ValidationError naming `option`
+std::pair<int, int> parse_grid(const std::string& option, const std::string& text);
+
+/// The extension of an output file in lower case. Called before the work, so that it is not in
+/// vain.
+/// @throws Error if it is none of `extensions`, or if the folder does not exist.
+std::string checked_extension(const std::filesystem::path& output,
+                              const std::vector<std::string>& extensions);
+
+}  // namespace gonio

@@ -1,0 +1,125 @@
+#include <gonio/tools/report/measure_material.h>
+
+#include <chrono>
+#include <fstream>
+#include <mutex>
+#include <thread>
+
+#include <gonio/tools/report/timing.h>
+
+#include <gonio/brdf/baseline.h>
+#include <gonio/brdf/exr/stack_file.h>
+#include <gonio/brdf/parallel.h>
+
+namespace gonio {
+namespace {
+
+nlohmann::json stack_params(const Stack<float>& stack) {
+  std::size_t crossings = 0;
+  int meridians = 0, parallels = 0;
+  for (const auto& d : stack.diagrams()) {
+    meridians = std::max(meridians, d.meridians());
+    parallels = std::max(parallels, d.parallels());
+    crossings += static_cast<std::size_t>(d.meridians() * d.parallels());
+  }
+  return {{"incident", stack.theta_i().size()},
+          {"largest_meridians", meridians},
+          {"largest_parallels", parallels},
+          {"mean_crossings", crossings / stack.theta_i().size()}};
+}
+
+/// Collects what is to be measured; the samplers live in the closures.
+class Bench {
+ public:
+  template <class S>
+  void add(std::string id, std::string chart, nlohmann::json params, double build_seconds, std::shared_ptr<const S> sampler) {
+    MethodReport method;
+    method.id = std::move(id);
+    method.chart = std::move(chart);
+    method.params = std::move(params);
+    method.bytes = sampler->bytes();
+    method.build_seconds = build_seconds;
+    method.ns = time_sampler(*sampler);
+    methods_.push_back(std::move(method));
+    subjects_.push_back(proof::subject_of(*sampler));
+    owners_.push_back(std::move(sampler));
+  }
+
+  std::vector<MethodReport> run(const Progress& progress) {
+    constexpr std::size_t angles = std::size(report_angles);
+    std::mutex mutex;
+    std::size_t done = 0;
+    for (MethodReport& m : methods_) m.angles.resize(angles);
+    parallel_for(methods_.size() * angles, [&](std::size_t k) {
+      const double theta_i = report_angles[k % angles] * pi<double> / 180;
+      methods_[k / angles].angles[k % angles] = proof::measure(subjects_[k / angles], theta_i);
+      const std::lock_guard<std::mutex> lock(mutex);
+      progress(static_cast<double>(++done) / static_cast<double>(methods_.size() * angles));
+    });
+    return std::move(methods_);
+  }
+
+ private:
+  std::vector<MethodReport> methods_;
+  std::vector<proof::Subject> subjects_;
+  std::vector<std::shared_ptr<const void>> owners_;
+};
+
+MaterialReport measure_stack_file(const std::filesystem::path& path, const Progress& progress) {
+  const StackFile file = load_stack(path);
+  MaterialReport material{file.name, path.string(), "stack", std::filesystem::file_size(path), {}};
+  const auto start = std::chrono::steady_clock::now();
+  const auto sampler = std::make_shared<const Sampler>(load_sampler(path));
+  const std::chrono::duration<double> build = std::chrono::steady_clock::now() - start;
+  nlohmann::json params = stack_params(sampler->stack());
+  params["self_contained"] = true;
+  Bench bench;
+  bench.add<Sampler>("displacement", file.chart, params, build.count(), sampler);
+  material.methods = bench.run(progress);
+  return material;
+}
+
+}  // namespace
+
+MaterialReport measure_material(const std::filesystem::path& path, const ReportOptions& options,
+                                const Progress& progress) {
+  if (is_exr(path)) return measure_stack_file(path, progress);
+  const auto table = std::make_shared<const BrdfTable>(load_table(path, options.policies));
+  MaterialReport material{table->info().name, table->info().source, table->info().format, table->info().source_bytes, {}};
+
+  constexpr double building = 0.3;  // its share of the progress
+  const auto start = std::chrono::steady_clock::now();
+  const StackGrid grid = build_stack(*table, options.stack, [&](double done) { progress(building * done); });
+  const std::chrono::duration<double> build = std::chrono::steady_clock::now() - start;
+
+  Bench bench;
+  const nlohmann::json none = nlohmann::json::object();
+  bench.add<UniformSampler>("uniform", "none", none, 0, std::make_shared<const UniformSampler>(table));
+  bench.add<CosineSampler>("cosine", "none", none, 0, std::make_shared<const CosineSampler>(table));
+  if (std::holds_alternative<RglTable>(table->data()))
+    bench.add<RglSampler>("rgl", "half", none, 0, std::make_shared<const RglSampler>(table));
+  for (const Interpolation interpolation : {Interpolation::nearest, Interpolation::mixture, Interpolation::displacement}) {
+    const auto sampler = std::make_shared<const Sampler>(table, grid, interpolation);
+    bench.add<Sampler>(to_string(interpolation), "outgoing", stack_params(sampler->stack()), build.count(), sampler);
+  }
+  material.methods = bench.run([&](double done) { progress(building + (1 - building) * done); });
+  return material;
+}
+
+Machine this_machine() {
+  Machine machine{"unknown", "unknown", std::max(1u, std::thread::hardware_concurrency())};
+#if defined(__clang__)
+  machine.compiler = "Clang " __clang_version__;
+#elif defined(__GNUC__)
+  machine.compiler = "GCC " __VERSION__;
+#endif
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);) {
+    if (line.rfind("model name", 0) != 0) continue;
+    machine.cpu = line.substr(line.find(':') + 2);
+    break;
+  }
+  return machine;
+}
+
+}  // namespace gonio

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+
+#include <gonio/tools/report/report_data.h>
+
+#include <gonio/brdf/build.h>
+
+namespace gonio {
+
+struct ReportOptions {
+  StackOptions stack;
+  CellPolicies policies;
+};
+
+/// Measures every method on one input: a table file, or a stack file (then as the self-contained
+/// sampler that it is). Quality on all cores, times on one. @throws Error if the file cannot be used.
+MaterialReport measure_material(const std::filesystem::path& path, const ReportOptions& options,
+                                const Progress& progress);
+
+Machine this_machine();
+
+}  // namespace gonio

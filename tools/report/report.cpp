@@ -1,0 +1,59 @@
+#include <gonio/tools/report/report.h>
+
+#include <gonio/mapping/error.h>
+#include <gonio/tools/options.h>
+#include <gonio/tools/progress.h>
+#include <gonio/tools/report/measure_material.h>
+#include <gonio/tools/report/write_report.h>
+
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace gonio {
+
+void add_report(CLI::App& app) {
+  struct Options {
+    std::vector<std::filesystem::path> inputs;
+    std::filesystem::path directory;
+    ReportOptions report;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* verb = app.add_subcommand("report", "Measure how well materials are sampled, by every method");
+  verb->add_option("IN", options->inputs, "Tables (MERL, RGL, MBSDF) or stack files")->required();
+  verb->add_option("-o,--output", options->directory, "Folder for report.json and report.md")->required();
+  verb->add_option_function<std::string>(
+          "--grid",
+          [options](const std::string& text) {
+            std::tie(options->report.stack.meridians, options->report.stack.parallels) = parse_grid("--grid", text);
+          },
+          "At most M meridians and N parallels in a diagram")
+      ->type_name("MxN")
+      ->default_str(std::to_string(options->report.stack.meridians) + "x" + std::to_string(options->report.stack.parallels));
+  add_stack_options(*verb, options->report.stack);
+  add_cell_policies(*verb, options->report.policies);
+  verb->footer(
+      "Angles 2, 10, 30, 50, 70, 80 and 85 degrees. Methods: uniform, cosine, nearest, mixture, displacement,\n"
+      "and for RGL files rgl, the format's own warps.\n\n"
+      "Examples:\n"
+      "  gonio report chrome.binary -o report\n"
+      "  gonio report measured/*.bsdf --bytes 128KiB -o report");
+  verb->callback([options] {
+    Report report;
+    report.machine = this_machine();
+    for (std::size_t k = 0; k < options->inputs.size(); ++k) {
+      ProgressLine line("report " + options->inputs[k].filename().string() + " (" + std::to_string(k + 1) + " of " +
+                        std::to_string(options->inputs.size()) + ")");
+      report.materials.push_back(
+          measure_material(options->inputs[k], options->report, [&](double share) { line.update(share); }));
+    }
+    write_report(options->directory, report);
+    print_summary(std::cout, report);
+    std::cout << "written: " << (options->directory / "report.md").string() << ", report.json\n";
+  });
+}
+
+}  // namespace gonio

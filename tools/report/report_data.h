@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <gonio/brdf/proof/measure.h>
+
+namespace gonio {
+
+/// Nanoseconds a call, one thread: medians over repeats with mixed directions.
+struct CallTimes {
+  double sample, pdf, eval;
+};
+
+/// One way of sampling one material, measured.
+struct MethodReport {
+  std::string id;          ///< uniform, cosine, nearest, mixture, displacement, rgl
+  std::string chart;       ///< what the method's density is tabulated over; "none" if nothing is tabulated
+  nlohmann::json params;   ///< what made it
+  std::size_t bytes = 0;   ///< all memory that the sampler holds, the source table apart
+  double build_seconds = 0;
+  CallTimes ns{};
+  std::vector<proof::Quality> angles;
+};
+
+struct MaterialReport {
+  std::string name, source, format;
+  std::uint64_t source_bytes = 0;
+  std::vector<MethodReport> methods;
+};
+
+struct Machine {
+  std::string cpu, compiler;
+  unsigned threads;
+};
+
+struct Report {
+  Machine machine;
+  std::vector<MaterialReport> materials;
+};
+
+/// The incident angles of every report, in degrees.
+inline constexpr double report_angles[] = {2, 10, 30, 50, 70, 80, 85};
+
+/// The significance of one chi-square test such that a whole report of correct samplers passes with
+/// probability 0.99.
+double report_significance(const Report& report);
+
+}  // namespace gonio

@@ -1,0 +1,141 @@
+#include <gonio/brdf/exr/stack_file.h>
+#include <gonio/brdf/sniff.h>
+#include <gonio/brdf/validate.h>
+#include <gonio/mapping/error.h>
+#include <gonio/tools/progress.h>
+#include <gonio/tools/validate.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace gonio {
+namespace {
+
+/// A name that promises one format over content of another is an error even though gonio reads the
+/// file: other programs go by the name.
+void check_name(const std::filesystem::path& path, const std::string& expected,
+                std::vector<Problem>& problems) {
+  std::string found = path.extension().string();
+  for (char& c : found) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const bool promises =
+      found == ".binary" || found == ".bsdf" || found == ".mbsdf" || found == ".exr";
+  if (promises && found != expected)
+    problems.push_back({"extension", found, expected + " for what the file holds", true});
+}
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.4g", value);
+  return text;
+}
+
+std::vector<Problem> check_stack(const std::filesystem::path& path) {
+  std::vector<Problem> problems;
+  StackFile file;
+  try {
+    file = load_stack(path);
+  } catch (const Error& error) {
+    // The message names the file, as does the line that this becomes.
+    const std::string text = error.what(), prefix = path.string() + ": ";
+    const bool named = text.compare(0, prefix.size(), prefix) == 0;
+    problems.push_back(
+        {"stack file", named ? text.substr(prefix.size()) : text, "one that loads", true});
+    return problems;
+  }
+  for (std::size_t k = 0; k < file.diagrams.diagrams.size(); ++k) {
+    const DiagramGrid& grid = file.diagrams.diagrams[k];
+    const auto peak =
+        std::max_element(grid.density.begin(), grid.density.end()) - grid.density.begin();
+    const double integral = grid.density[peak] / Diagram<double>(grid).grid().density[peak];
+    if (std::abs(integral - 1) > 1e-3) {
+      problems.push_back({"diagram " + std::to_string(k),
+                          "densities with integral " + number(integral),
+                          "1 over the hemisphere (they are scaled on loading)", false});
+    }
+  }
+  const double last = file.diagrams.theta_i.back() * 180 / pi<double>;
+  if (last < 80) {
+    problems.push_back(
+        {"theta_i", "a last diagram at " + number(last) + " degrees", "80 or more", false});
+  }
+  if (file.colour.empty()) {
+    problems.push_back(
+        {"colour", "none", "a part colour, without which sampling needs the table", false});
+  }
+  return problems;
+}
+
+std::vector<Problem> check_file(const std::filesystem::path& path) {
+  std::vector<Problem> problems;
+  if (is_exr(path)) {
+    problems = check_stack(path);
+    check_name(path, ".exr", problems);
+    return problems;
+  }
+  problems = validate_table(path);
+  switch (sniff_format(path)) {
+    case TableFormat::merl:
+      check_name(path, ".binary", problems);
+      break;
+    case TableFormat::rgl:
+      check_name(path, ".bsdf", problems);
+      break;
+    case TableFormat::mbsdf:
+      check_name(path, ".mbsdf", problems);
+      break;
+    case TableFormat::unknown:
+      break;  // reported already
+  }
+  return problems;
+}
+
+/// Prints what is wrong with a file. False if it cannot be used.
+bool report(const std::string& path) {
+  std::vector<Problem> problems;
+  {
+    const ProgressLine progress("checking " + path);
+    problems = check_file(path);
+  }
+  bool usable = true;
+  for (const Problem& problem : problems) {
+    usable = usable && !problem.fatal;
+    std::printf("%s: %s: %s\n", path.c_str(), problem.fatal ? "error" : "warning",
+                to_string(problem).c_str());
+  }
+  if (problems.empty()) std::printf("%s: ok\n", path.c_str());
+  return usable;
+}
+
+}  // namespace
+
+void add_validate(CLI::App& app) {
+  auto files = std::make_shared<std::vector<std::string>>();
+  CLI::App* verb = app.add_subcommand("validate", "Every problem of tables and stack files");
+  verb->add_option("FILE", *files, "MERL, RGL or MBSDF tables, or stack files (.exr)")->required();
+  verb->footer(
+      "Prints a line for each problem: an error makes the file unusable, a warning does not.\n"
+      "Exit status: 1 if a file is unusable.\n\n"
+      "Examples:\n"
+      "  gonio validate chrome.binary\n"
+      "  gonio validate measured/*.bsdf stack.exr");
+  verb->callback([files] {
+    std::string unusable;
+    for (const std::string& file : *files) {
+      bool usable = false;
+      try {
+        usable = report(file);
+      } catch (const Error& error) {  // it cannot be read; the others may
+        std::printf("%s: error: %s\n", file.c_str(), error.what());
+      }
+      if (!usable) unusable += (unusable.empty() ? "" : ", ") + file;
+    }
+    if (!unusable.empty()) throw Error("unusable: " + unusable);
+  });
+}
+
+}  // namespace gonio
