@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <string_view>
 
 namespace gonio::detail {
@@ -106,6 +107,60 @@ std::vector<Proposal> other_starts(const Proposal& model, double cosine_share) {
     }
   }
   return starts;
+}
+
+// A lobe without weight has no gradient to bring it back, and a shape of no meaning.
+constexpr double dead_weight = 0.02;
+
+size_t heaviest(const Proposal& p) {
+  return static_cast<size_t>(std::max_element(p.weight.begin() + 1, p.weight.end()) -
+                             p.weight.begin()) -
+         1;
+}
+
+// Dead lobes start again beside the heaviest one, narrower and wider in turn.
+Proposal revived(Proposal p) {
+  const ShearedGgx<double> model = p.shape[heaviest(p)];
+  bool narrower = true;
+  double sum = 0;
+  for (size_t k = 0; k < p.shape.size(); ++k) {
+    if (p.weight[k + 1] >= dead_weight) continue;
+    const double factor = narrower ? 0.6 : 1.7;
+    p.shape[k] = {factor * model.alpha_x, factor * model.alpha_y, model.shear};
+    p.weight[k + 1] = 0.15;
+    narrower = !narrower;
+  }
+  for (double w : p.weight) sum += w;
+  for (double& w : p.weight) w /= sum;
+  return p;
+}
+
+Proposal refine_from(const Quadrature& quadrature, const Proposal& start, double cosine_share) {
+  Proposal best = refine_proposal(quadrature, start, true, cosine_share);
+  if (!quadrature.points.empty() && std::any_of(best.weight.begin() + 1, best.weight.end(),
+                                                [](double w) { return w < dead_weight; })) {
+    const Proposal other = refine_proposal(quadrature, revived(best), true, cosine_share);
+    if (relative_variance(quadrature, other) < relative_variance(quadrature, best)) best = other;
+  }
+  return best;
+}
+
+// A dead lobe takes the shape that it has at the nearest angle where it lives, so that between the
+// two angles only its weight changes.
+void lend_shapes(std::vector<Proposal>& proposals) {
+  const int n = static_cast<int>(proposals.size());
+  for (size_t k = 0; k < proposals[0].shape.size(); ++k) {
+    std::vector<int> living;
+    for (int i = 0; i < n; ++i) {
+      if (proposals[i].weight[k + 1] >= dead_weight) living.push_back(i);
+    }
+    for (int i = 0; i < n && !living.empty(); ++i) {
+      const int nearest = *std::min_element(living.begin(), living.end(), [&](int a, int b) {
+        return std::abs(a - i) < std::abs(b - i);
+      });
+      proposals[i].shape[k] = proposals[nearest].shape[k];
+    }
+  }
 }
 
 }  // namespace
@@ -212,7 +267,7 @@ Proposal refine_proposal(const Quadrature& quadrature, const Proposal& start, bo
 std::vector<Proposal> refine_all(const std::vector<Quadrature>& quadratures,
                                  std::vector<Proposal> start, bool shapes, double cosine_share) {
   const size_t n = start.size();
-  if (!shapes) {
+  if (!shapes || start[0].shape.empty()) {
     parallel_for(n, [&](size_t i) {
       start[i] = refine_proposal(quadratures[i], start[i], false, cosine_share);
     });
@@ -222,7 +277,7 @@ std::vector<Proposal> refine_all(const std::vector<Quadrature>& quadratures,
   std::vector<Proposal> candidates = other_starts(start[middle], cosine_share);
   candidates.push_back(start[middle]);
   parallel_for(candidates.size(), [&](size_t i) {
-    candidates[i] = refine_proposal(quadratures[middle], candidates[i], true, cosine_share);
+    candidates[i] = refine_from(quadratures[middle], candidates[i], cosine_share);
   });
   start[middle] = *std::min_element(candidates.begin(), candidates.end(),
                                     [&](const Proposal& a, const Proposal& b) {
@@ -232,14 +287,15 @@ std::vector<Proposal> refine_all(const std::vector<Quadrature>& quadratures,
   parallel_for(2, [&](size_t side) {
     if (side == 0) {
       for (size_t i = middle; i-- > 0;) {
-        start[i] = refine_proposal(quadratures[i], start[i + 1], true, cosine_share);
+        start[i] = refine_from(quadratures[i], start[i + 1], cosine_share);
       }
     } else {
       for (size_t i = middle + 1; i < n; ++i) {
-        start[i] = refine_proposal(quadratures[i], start[i - 1], true, cosine_share);
+        start[i] = refine_from(quadratures[i], start[i - 1], cosine_share);
       }
     }
   });
+  lend_shapes(start);
   return start;
 }
 
