@@ -11,8 +11,8 @@ namespace gonio {
 /// creates energy.
 ///
 /// Midpoint rule over half vectors, 4 * resolution^2 lookups, nodes crowded around the mirror
-/// direction: with the default, lobes down to half a degree wide come within 1 %, a Lambertian
-/// within 0.1 % up to 85 degrees.
+/// direction. With the default a Lambertian comes within 0.1 % up to 85 degrees; the measured
+/// materials tried, a near-mirror among them, within 0.1 % of the same rule at 512.
 glm::vec3 directional_albedo(const BrdfTable& table, float theta_i, int resolution = 128) noexcept;
 
 }  // namespace gonio

@@ -8,13 +8,14 @@
 
 namespace gonio {
 
-/// Any table in the layout of MERL: each cell holds the mean of f_r at 2 x 2 x 2 points, weighted
-/// with both cosines; cells with no pair of directions above the horizon get -1. Uses all cores.
+/// Any table in the layout of MERL, sampled at the cell centres and corrected by -1/12 of the
+/// second differences, so that linear interpolation of the cells keeps the energy; cells with a
+/// direction at or below the horizon get -1. A MERL table is taken as it is. Uses all cores.
 ///
-/// With 360 phi_d bins the directional albedos of measured materials keep within 1.2 % up to 85
-/// degrees. The common layout with 180 bins is reciprocal by construction: a cell holds the mean of
-/// f_r(wi, wo) and f_r(wo, wi), and measured materials, which are not reciprocal, change albedo by
-/// up to 20 % near grazing.
+/// With 360 phi_d bins the luminance albedo of measured materials keeps within 0.6 % up to 85
+/// degrees (a channel that is nearly black, within 0.001). The common layout with 180 bins is
+/// reciprocal by construction: a cell holds the mean of f_r(wi, wo) and f_r(wo, wi), and measured
+/// materials, which are not reciprocal, change albedo by up to 20 % near grazing.
 /// @throws Error if n_phi_d is neither 180 nor 360.
 MerlFile sample_as_merl(const BrdfTable& table, int n_phi_d = 360);
 

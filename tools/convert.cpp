@@ -19,6 +19,7 @@ constexpr int colour_side = 16;
 
 struct Options {
   std::string in, out, grid;
+  int n_phi_d = 360;
   StackOptions stack;
   CellPolicies policies;
 };
@@ -58,7 +59,7 @@ void convert_stack(const CLI::App& verb, const Options& options, const std::stri
                 ": format: found a stack file, expected a table (MERL, RGL or MBSDF) to write " +
                 extension);
   }
-  refuse(verb, {"--incident", "--grid", "--bytes", "--tolerance"},
+  refuse(verb, {"--incident", "--grid", "--bytes", "--tolerance", "--phi-d"},
          "a stack file keeps its diagrams");
   refuse_policies(verb, "a stack file has no such cells");
   save_stack(options.out, load_stack(options.in));
@@ -68,9 +69,11 @@ void table_to_merl(const CLI::App& verb, const Options& options) {
   const ProgressLine progress("writing " + options.out);
   if (sniff_format(options.in) == TableFormat::merl) {
     refuse_policies(verb, "MERL to MERL keeps the values as they are stored");
+    refuse(verb, {"--phi-d"}, "MERL to MERL keeps the values as they are stored");
+    load_table(options.in);  // what cannot be used is not copied either
     write_merl(options.out, read_merl(options.in));
   } else {
-    write_table_as_merl(load_table(options.in, options.policies), options.out);
+    write_table_as_merl(load_table(options.in, options.policies), options.out, options.n_phi_d);
   }
 }
 
@@ -78,6 +81,7 @@ void table_to_mbsdf(const CLI::App& verb, const Options& options) {
   const ProgressLine progress("writing " + options.out);
   if (sniff_format(options.in) == TableFormat::mbsdf && options.grid.empty()) {
     refuse_policies(verb, "MBSDF to MBSDF without --grid keeps the values as they are stored");
+    load_table(options.in);  // what cannot be used is not copied either
     write_mbsdf(options.out, read_mbsdf(options.in));
     return;
   }
@@ -87,6 +91,7 @@ void table_to_mbsdf(const CLI::App& verb, const Options& options) {
 
 void convert(const CLI::App& verb, Options& options) {
   const std::string extension = checked_extension(options.out, {".exr", ".binary", ".mbsdf"});
+  if (extension != ".binary") refuse(verb, {"--phi-d"}, "only MERL has it");
   if (is_exr(options.in)) {
     convert_stack(verb, options, extension);
     return;
@@ -127,6 +132,12 @@ void add_convert(CLI::App& app) {
                        "]; .mbsdf: M thetas and N phis [90x180]")
       ->type_name("MxN");
   add_stack_options(*verb, stack);
+  verb->add_option("--phi-d", options->n_phi_d,
+                   ".binary: bins of phi_d, 360 or 180; most other programs read 180 alone, which "
+                   "averages f_r(wi, wo) and f_r(wo, wi)")
+      ->check(CLI::IsMember({180, 360}))
+      ->type_name("BINS")
+      ->capture_default_str();
   add_cell_policies(*verb, options->policies);
   verb->footer(
       "MERL to MERL, and MBSDF to MBSDF without --grid, keep the values as they are stored.\n"

@@ -18,6 +18,7 @@ namespace {
 int fail(const CLI::App& app, std::string message) {
   std::string program = "gonio";
   for (const CLI::App* verb : app.get_subcommands()) program += " " + verb->get_name();
+  std::fflush(stdout);
   for (char& c : message) c = std::iscntrl(static_cast<unsigned char>(c)) ? ' ' : c;
   std::fprintf(stderr, "%s: %s\n", program.c_str(), message.c_str());
   return 1;

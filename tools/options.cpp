@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <cstdint>
 
 namespace gonio {
 namespace {
@@ -54,8 +55,9 @@ void add_stack_options(CLI::App& verb, StackOptions& stack) {
   verb.add_option("--incident", stack.incident, "At most this many incident angles")
       ->capture_default_str()
       ->group(group);
-  verb.add_option("--bytes", stack.bytes, "At most this much memory for the diagrams, such as 1MiB")
-      ->transform(CLI::AsSizeValue(true))
+  verb.add_option_function<std::string>(
+          "--bytes", [&stack](const std::string& text) { stack.bytes = parse_bytes("--bytes", text); },
+          "At most this much memory for the diagrams (once there are seven), such as 1MiB")
       ->type_name("SIZE")
       ->default_str(std::to_string(stack.bytes / 1024) + "KiB")
       ->group(group);
@@ -73,6 +75,22 @@ std::pair<int, int> parse_grid(const std::string& option, const std::string& tex
     if (second.ec == std::errc() && second.ptr == end && m > 0 && n > 0) return {m, n};
   }
   throw CLI::ValidationError(option, "found '" + text + "', expected two numbers such as 40x30");
+}
+
+std::size_t parse_bytes(const std::string& option, const std::string& text) {
+  constexpr std::pair<const char*, std::size_t> units[] = {
+      {"", 1},          {"B", 1},         {"kB", 1000},       {"MB", 1000 * 1000},
+      {"KiB", 1 << 10}, {"MiB", 1 << 20}, {"GB", 1000000000}, {"GiB", 1 << 30}};
+  std::size_t number = 0;
+  const char* const end = text.data() + text.size();
+  const auto parsed = std::from_chars(text.data(), end, number);
+  const std::string unit(parsed.ptr, end);
+  for (const auto& [name, factor] : units) {
+    if (parsed.ec == std::errc() && unit == name && number <= SIZE_MAX / factor)
+      return number * factor;
+  }
+  throw CLI::ValidationError(option,
+                             "found '" + text + "', expected bytes such as 500000 or 480KiB");
 }
 
 std::string checked_extension(const std::filesystem::path& output,

@@ -3,6 +3,7 @@
 #include <gonio/brdf/build.h>
 
 #include <CLI/App.hpp>
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -26,6 +27,9 @@ void add_stack_options(CLI::App& verb, StackOptions& stack);
 
 /// Two positive numbers, as in "40x30". @throws CLI::ValidationError naming `option`
 std::pair<int, int> parse_grid(const std::string& option, const std::string& text);
+
+/// A number of bytes, as in "5000", "480KiB" or "1MB". @throws CLI::ValidationError naming `option`
+std::size_t parse_bytes(const std::string& option, const std::string& text);
 
 /// The extension of an output file in lower case. Called before the work, so that it is not in
 /// vain.

@@ -34,17 +34,19 @@ std::string number(double value) {
   return text;
 }
 
+/// What an error says of `path`, without naming it: the line that it becomes does.
+std::string text_of(const Error& error, const std::filesystem::path& path) {
+  const std::string text = error.what(), prefix = path.string() + ": ";
+  return text.compare(0, prefix.size(), prefix) == 0 ? text.substr(prefix.size()) : text;
+}
+
 std::vector<Problem> check_stack(const std::filesystem::path& path) {
   std::vector<Problem> problems;
   StackFile file;
   try {
     file = load_stack(path);
   } catch (const Error& error) {
-    // The message names the file, as does the line that this becomes.
-    const std::string text = error.what(), prefix = path.string() + ": ";
-    const bool named = text.compare(0, prefix.size(), prefix) == 0;
-    problems.push_back(
-        {"stack file", named ? text.substr(prefix.size()) : text, "one that loads", true});
+    problems.push_back({"stack file", text_of(error, path), "one that loads", true});
     return problems;
   }
   for (std::size_t k = 0; k < file.diagrams.diagrams.size(); ++k) {
@@ -130,7 +132,7 @@ void add_validate(CLI::App& app) {
       try {
         usable = report(file);
       } catch (const Error& error) {  // it cannot be read; the others may
-        std::printf("%s: error: %s\n", file.c_str(), error.what());
+        std::printf("%s: error: %s\n", file.c_str(), text_of(error, file).c_str());
       }
       if (!usable) unusable += (unusable.empty() ? "" : ", ") + file;
     }

@@ -14,6 +14,7 @@
 #include <ImfStringAttribute.h>
 #include <ImfTestFile.h>
 #include <ImfVersion.h>
+#include <ImathBox.h>
 
 #include <fstream>
 #include <vector>
@@ -113,6 +114,7 @@ StackFile load(const std::string& file) {
   for (int k = 0; k < input.parts(); ++k) {
     const Imf::Header& header = input.header(k);
     if (!input.partComplete(k)) fail(file, "part " + header.name(), "an incomplete part", "all its rows");
+    if (!result.colour.empty()) fail(file, "part " + header.name(), "a part after colour", "colour to be the last");
     if (header.name() == "colour") {
       const int angles = static_cast<int>(result.diagrams.theta_i.size());
       const int side = header.dataWindow().max.x < largest_side ? header.dataWindow().max.x + 1 : 0;
@@ -175,8 +177,14 @@ void save_stack(const std::filesystem::path& path, const StackFile& file) {
 
   write_atomically(path, [&](const std::filesystem::path& temporary) {
     try {
+      // All parts of a file share one display window: it covers them all.
+      Imath::Box2i display;
+      for (const Part& part : parts) display.extendBy(part.header.dataWindow());
       std::vector<Imf::Header> headers;
-      for (const Part& part : parts) headers.push_back(part.header);
+      for (Part& part : parts) {
+        part.header.displayWindow() = display;
+        headers.push_back(part.header);
+      }
       Imf::MultiPartOutputFile output(temporary.c_str(), headers.data(), static_cast<int>(headers.size()), false, 1);
       for (std::size_t k = 0; k < parts.size(); ++k) {
         const auto& window = parts[k].header.dataWindow();

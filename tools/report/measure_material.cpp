@@ -67,7 +67,7 @@ class Bench {
 
 MaterialReport measure_stack_file(const std::filesystem::path& path, const Progress& progress) {
   const StackFile file = load_stack(path);
-  MaterialReport material{file.name, path.string(), "stack", std::filesystem::file_size(path), {}};
+  MaterialReport material{file.name, path.string(), "stack", std::filesystem::file_size(path), {}, {}};
   const auto start = std::chrono::steady_clock::now();
   const auto sampler = std::make_shared<const Sampler>(load_sampler(path));
   const std::chrono::duration<double> build = std::chrono::steady_clock::now() - start;
@@ -76,6 +76,7 @@ MaterialReport measure_stack_file(const std::filesystem::path& path, const Progr
   Bench bench;
   bench.add<Sampler>("displacement", file.chart, params, build.count(), sampler);
   material.methods = bench.run(progress);
+  material.stack = sampler->stack();
   return material;
 }
 
@@ -85,7 +86,7 @@ MaterialReport measure_material(const std::filesystem::path& path, const ReportO
                                 const Progress& progress) {
   if (is_exr(path)) return measure_stack_file(path, progress);
   const auto table = std::make_shared<const BrdfTable>(load_table(path, options.policies));
-  MaterialReport material{table->info().name, table->info().source, table->info().format, table->info().source_bytes, {}};
+  MaterialReport material{table->info().name, table->info().source, table->info().format, table->info().source_bytes, {}, {}};
 
   constexpr double building = 0.3;  // its share of the progress
   const auto start = std::chrono::steady_clock::now();
@@ -103,6 +104,7 @@ MaterialReport measure_material(const std::filesystem::path& path, const ReportO
     bench.add<Sampler>(to_string(interpolation), "outgoing", stack_params(sampler->stack()), build.count(), sampler);
   }
   material.methods = bench.run([&](double done) { progress(building + (1 - building) * done); });
+  material.stack.emplace(grid, Interpolation::displacement);
   return material;
 }
 

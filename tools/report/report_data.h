@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,7 @@ struct MaterialReport {
   std::string name, source, format;
   std::uint64_t source_bytes = 0;
   std::vector<MethodReport> methods;
+  std::optional<Stack<float>> stack;  ///< of `displacement`, for the figure; not part of the JSON
 };
 
 struct Machine {

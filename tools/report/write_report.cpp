@@ -1,5 +1,7 @@
 #include <gonio/tools/report/write_report.h>
 
+#include <gonio/tools/report/grid_figure.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
@@ -45,7 +47,7 @@ void write_markdown(std::ostream& out, const Report& report) {
          "Times are nanoseconds a call on one thread. A chi-square p below "
       << number(report_significance(report), 2) << " (0.01 for the whole report, Sidak) says that draws do not follow the pdf.\n";
   for (const MaterialReport& material : report.materials) {
-    out << "\n## " << material.name << "\n\n" << material.format << ", " << kib(material.source_bytes) << ", `" << material.source << "`\n\n"
+    out << "\n## " << material.name << "\n\n" << material.format << ", " << kib(material.source_bytes) << ", `" << material.source << "`\n\n![grid](" << material.name << ".svg)\n\n"
         << "| method | chart | bytes | build s | sample ns | pdf ns | eval ns |";
     for (const double angle : report_angles) out << " relvar " << angle << "° |";
     out << "\n|---|---|---|---|---|---|---|";
@@ -109,6 +111,8 @@ void write_report(const std::filesystem::path& directory, const Report& report) 
   std::error_code failed;
   std::filesystem::create_directories(directory, failed);
   if (failed) throw Error(directory.string() + ": cannot be made: " + failed.message() + ", expected a folder to write to");
+  for (const MaterialReport& material : report.materials)
+    if (material.stack) write_grid_figure(directory / (material.name + ".svg"), material.name, *material.stack);
   write_stream_atomically(directory / "report.json", [&](std::ostream& out) { out << to_json(report).dump(1) << '\n'; });
   write_stream_atomically(directory / "report.md", [&](std::ostream& out) { write_markdown(out, report); });
 }

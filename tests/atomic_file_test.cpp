@@ -1,0 +1,57 @@
+#include <gonio/brdf/atomic_file.h>
+#include <gonio/mapping/error.h>
+#include <gtest/gtest.h>
+
+#include "table_files.h"
+
+namespace gonio {
+namespace {
+
+using namespace test;
+
+long entries(const TemporaryFolder& folder) {
+  return std::distance(std::filesystem::directory_iterator(folder.path()), {});
+}
+
+TEST(AtomicFile, ReplacesAsAWhole) {
+  const TemporaryFolder folder;
+  for (const char* text : {"first", "second"}) {
+    write_stream_atomically(folder / "x", [&](std::ostream& stream) { stream << text; });
+    EXPECT_EQ(file_bytes(folder / "x"), text);
+    EXPECT_EQ(entries(folder), 1);
+  }
+}
+
+TEST(AtomicFile, KeepsTheOldFileWhenWritingThrows) {
+  const TemporaryFolder folder;
+  write_file(folder / "x", "old");
+  const auto fail = [](std::ostream& stream) {
+    stream << "half";
+    throw std::runtime_error("midway");
+  };
+  EXPECT_THROW(write_stream_atomically(folder / "x", fail), std::runtime_error);
+  EXPECT_EQ(file_bytes(folder / "x"), "old");
+  EXPECT_EQ(entries(folder), 1);
+}
+
+TEST(AtomicFile, FullDiskIsAnError) {
+  const TemporaryFolder folder;
+  const auto full = [](std::ostream& stream) { stream.setstate(std::ios::badbit); };
+  EXPECT_THROW(write_stream_atomically(folder / "x", full), Error);
+  EXPECT_EQ(entries(folder), 0);
+}
+
+TEST(AtomicFile, FollowsLinksAndRefusesWhatIsNoFile) {
+  const TemporaryFolder folder;
+  write_file(folder / "real", "old");
+  std::filesystem::create_symlink(folder / "real", folder / "link");
+  write_stream_atomically(folder / "link", [](std::ostream& stream) { stream << "new"; });
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link"));
+  EXPECT_EQ(file_bytes(folder / "real"), "new");
+  const auto nothing = [](std::ostream&) {};
+  EXPECT_THROW(write_stream_atomically(folder.path(), nothing), Error);
+  EXPECT_THROW(write_stream_atomically(folder.path() / "none" / "x", nothing), Error);
+}
+
+}  // namespace
+}  // namespace gonio

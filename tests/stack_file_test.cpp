@@ -1,0 +1,362 @@
+#include <ImathBox.h>
+#include <ImfChannelList.h>
+#include <ImfFloatAttribute.h>
+#include <ImfFloatVectorAttribute.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIntAttribute.h>
+#include <ImfMultiPartOutputFile.h>
+#include <ImfOutputPart.h>
+#include <ImfPartType.h>
+#include <ImfRgbaFile.h>
+#include <ImfStringAttribute.h>
+#include <ImfTiledRgbaFile.h>
+#include <gonio/brdf/bytes.h>
+#include <gonio/brdf/exr/stack_file.h>
+#include <gonio/mapping/error.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <random>
+
+namespace gonio {
+namespace {
+
+namespace fs = std::filesystem;
+
+class StackFileTest : public testing::Test {
+ protected:
+  StackFileTest() {
+    const std::string test = testing::UnitTest::GetInstance()->current_test_info()->name();
+    folder_ = fs::path(testing::TempDir()) / ("stack_file_" + test + std::to_string(getpid()));
+    fs::create_directories(folder_);
+  }
+  ~StackFileTest() override { fs::remove_all(folder_); }
+
+  fs::path path(const std::string& name) const { return folder_ / name; }
+
+  fs::path folder_;
+};
+
+double uniform(std::mt19937& random) { return static_cast<double>(random()) / 4294967296.0; }
+
+std::vector<double> random_lines(std::mt19937& random, int count, double last) {
+  std::vector<double> lines = {0};
+  for (int i = 1; i < count; ++i) lines.push_back(lines.back() + 0.05 + uniform(random));
+  for (double& line : lines) line *= last / lines.back();
+  return lines;
+}
+
+/// Diagrams of different sizes over twelve decades, as a sampler holds them, with colour.
+StackFile make_file(int angles = 3, int side = 4) {
+  std::mt19937 random(7);
+  StackGrid grid;
+  for (int k = 0; k < angles; ++k) {
+    DiagramGrid diagram;
+    diagram.phi = random_lines(random, 3 + k, pi<double>);
+    diagram.r = random_lines(random, 5 - k, 1);
+    for (std::size_t i = 0; i < diagram.phi.size() * diagram.r.size(); ++i)
+      diagram.density.push_back(std::pow(10.0, 12 * uniform(random) - 6));
+    grid.theta_i.push_back(0.7 * k);
+    grid.diagrams.push_back(std::move(diagram));
+  }
+  StackFile file;
+  file.diagrams = Stack<float>(grid, Interpolation::displacement).grid();
+  std::vector<glm::vec3> values(angles * side * (side / 2));
+  for (glm::vec3& w : values) w = {uniform(random), 1e-30f, 100 * uniform(random)};
+  file.colour = Colour(angles, side, std::move(values));
+  file.name = "näme";
+  file.source = "some file.binary";
+  return file;
+}
+
+void expect_same(const StackGrid& a, const StackGrid& b) {
+  EXPECT_EQ(a.theta_i, b.theta_i);
+  ASSERT_EQ(a.diagrams.size(), b.diagrams.size());
+  for (std::size_t k = 0; k < a.diagrams.size(); ++k) {
+    EXPECT_EQ(a.diagrams[k].azimuth, b.diagrams[k].azimuth);
+    EXPECT_EQ(a.diagrams[k].phi, b.diagrams[k].phi);
+    EXPECT_EQ(a.diagrams[k].r, b.diagrams[k].r);
+    EXPECT_EQ(a.diagrams[k].density, b.diagrams[k].density);
+  }
+}
+
+std::string message_of(const fs::path& path) {
+  try {
+    load_stack(path);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+void write_bytes(const fs::path& path, const std::string& bytes) {
+  fs::remove(path);  // replacing the content of a file makes some file systems wait for the disk
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+/// A stack file as another program would write it from docs/stack-file.md, open to changes.
+struct RawPart {
+  Imf::Header header;
+  std::vector<std::string> channels;
+  std::vector<float> pixels;
+};
+
+std::vector<RawPart> make_parts() {
+  const auto part = [](const char* name, int width, int height, std::vector<std::string> channels) {
+    RawPart raw{Imf::Header(width, height), std::move(channels), {}};
+    raw.header.setName(name);
+    raw.header.setType(Imf::SCANLINEIMAGE);
+    raw.header.compression() = Imf::ZIPS_COMPRESSION;
+    raw.header.displayWindow() = Imath::Box2i({0, 0}, {3, 3});
+    raw.pixels.assign(raw.channels.size() * width * height, 0.5f);
+    return raw;
+  };
+  std::vector<RawPart> parts = {part("diagram.000", 3, 2, {"Y"}), part("diagram.001", 3, 2, {"Y"}),
+                                part("colour", 4, 4, {"R", "G", "B"})};
+  for (int k = 0; k < 2; ++k) {
+    parts[k].header.insert("gonio:theta_i", Imf::FloatAttribute(static_cast<float>(k)));
+    parts[k].header.insert("gonio:phi", Imf::FloatVectorAttribute({0, pi<float>}));
+    parts[k].header.insert("gonio:r", Imf::FloatVectorAttribute({0, 0.5f, 1}));
+  }
+  Imf::Header& first = parts.front().header;
+  first.insert("gonio:format", Imf::IntAttribute(1));
+  first.insert("gonio:name", Imf::StringAttribute("raw"));
+  first.insert("gonio:source", Imf::StringAttribute(""));
+  first.insert("gonio:chart", Imf::StringAttribute("outgoing"));
+  return parts;
+}
+
+void write_parts(const fs::path& path, std::vector<RawPart>& parts) {
+  std::vector<Imf::Header> headers;
+  for (RawPart& part : parts) {
+    for (const std::string& c : part.channels)
+      part.header.channels().insert(c, Imf::Channel(Imf::FLOAT));
+    headers.push_back(part.header);
+  }
+  Imf::MultiPartOutputFile output(path.c_str(), headers.data(), static_cast<int>(headers.size()));
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const auto& window = parts[k].header.dataWindow();
+    const std::size_t pixel = parts[k].channels.size() * sizeof(float);
+    Imf::FrameBuffer buffer;
+    for (std::size_t c = 0; c < parts[k].channels.size(); ++c)
+      buffer.insert(parts[k].channels[c],
+                    Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(parts[k].pixels.data() + c),
+                               pixel, pixel * (window.max.x + 1)));
+    Imf::OutputPart out(output, static_cast<int>(k));
+    out.setFrameBuffer(buffer);
+    out.writePixels(window.max.y + 1);
+  }
+}
+
+TEST_F(StackFileTest, RoundTripIsBitExact) {
+  const StackFile saved = make_file();
+  save_stack(path("a.exr"), saved);
+  const StackFile loaded = load_stack(path("a.exr"));
+  expect_same(saved.diagrams, loaded.diagrams);
+  expect_same(saved.diagrams, Stack<float>(loaded.diagrams, Interpolation::displacement).grid());
+  EXPECT_EQ(saved.colour.side(), loaded.colour.side());
+  EXPECT_EQ(saved.colour.values(), loaded.colour.values());
+  EXPECT_EQ(saved.name, loaded.name);
+  EXPECT_EQ(saved.source, loaded.source);
+  EXPECT_EQ(saved.chart, loaded.chart);
+  save_stack(path("b.exr"), loaded);
+  EXPECT_EQ(read_bytes(path("a.exr")), read_bytes(path("b.exr")));
+}
+
+TEST_F(StackFileTest, RoundTripWithoutColour) {
+  StackFile saved = make_file(1);
+  saved.colour = {};
+  save_stack(path("a.exr"), saved);
+  const StackFile loaded = load_stack(path("a.exr"));
+  expect_same(saved.diagrams, loaded.diagrams);
+  EXPECT_TRUE(loaded.colour.empty());
+  EXPECT_THROW(load_sampler(path("a.exr")), Error);
+}
+
+TEST_F(StackFileTest, LoadedSamplerIsTheSavedOne) {
+  const StackFile file = make_file();
+  save_stack(path("a.exr"), file);
+  const Sampler saved(file.diagrams, file.colour), loaded = load_sampler(path("a.exr"));
+  EXPECT_TRUE(loaded.self_contained());
+  const glm::vec3 wi(0.6f, 0, 0.8f);
+  for (int k = 0; k < 64; ++k) {
+    const glm::vec2 u((static_cast<float>(k % 8) + 0.5f) / 8,
+                      (static_cast<float>(k / 8) + 0.5f) / 8);
+    const auto a = saved.sample(wi, u), b = loaded.sample(wi, u);
+    ASSERT_TRUE(a && b);
+    EXPECT_EQ(a->wo, b->wo);
+    EXPECT_EQ(a->pdf, b->pdf);
+    EXPECT_EQ(a->weight, b->weight);
+  }
+}
+
+TEST_F(StackFileTest, RecognisedByContent) {
+  save_stack(path("a.binary"), make_file());
+  EXPECT_TRUE(is_exr(path("a.binary")));
+  write_bytes(path("b.exr"), "tensor_file");
+  EXPECT_FALSE(is_exr(path("b.exr")));
+  EXPECT_NE(message_of(path("b.exr")).find("b.exr: content: found no OpenEXR file"),
+            std::string::npos);
+  EXPECT_THROW(is_exr(path("missing.exr")), Error);
+  EXPECT_THROW(is_exr(folder_), Error);
+}
+
+TEST_F(StackFileTest, TruncatedAtAnyLength) {
+  save_stack(path("a.exr"), make_file());
+  const std::string bytes = read_bytes(path("a.exr"));
+  for (std::size_t length = 0; length < bytes.size(); ++length) {
+    write_bytes(path("b.exr"), bytes.substr(0, length));
+    ASSERT_NE(message_of(path("b.exr")).find("b.exr: "), std::string::npos) << length << " bytes";
+  }
+}
+
+TEST_F(StackFileTest, AnyByteDamaged) {
+  save_stack(path("a.exr"), make_file());
+  const std::string bytes = read_bytes(path("a.exr"));
+  int refused = 0;
+  for (std::size_t at = 0; at < bytes.size(); ++at) {
+    for (const int flip : {0x01, 0x80, 0xff}) {
+      std::string damaged = bytes;
+      damaged[at] = static_cast<char>(damaged[at] ^ flip);
+      write_bytes(path("b.exr"), damaged);
+      try {
+        const StackFile file = load_stack(path("b.exr"));
+        // Damage that is not seen must still leave something that can be sampled.
+        if (!file.colour.empty()) {
+          EXPECT_NO_THROW(Sampler(file.diagrams, file.colour)) << at;
+        }
+      } catch (const Error& error) {
+        ++refused;
+        ASSERT_NE(std::string(error.what()).find("b.exr: "), std::string::npos) << at;
+      }
+    }
+  }
+  EXPECT_GT(refused, static_cast<int>(bytes.size()));
+}
+
+TEST_F(StackFileTest, OtherImagesAreRefused) {
+  std::vector<Imf::Rgba> pixels(16 * 16);
+  {
+    Imf::RgbaOutputFile image(path("rgba.exr").c_str(), 16, 16);
+    image.setFrameBuffer(pixels.data(), 1, 16);
+    image.writePixels(16);
+  }
+  {
+    Imf::TiledRgbaOutputFile image(path("tiled.exr").c_str(), 16, 16, 8, 8, Imf::ONE_LEVEL);
+    image.setFrameBuffer(pixels.data(), 1, 16);
+    image.writeTiles(0, image.numXTiles() - 1, 0, image.numYTiles() - 1);
+  }
+  for (const char* name : {"rgba.exr", "tiled.exr"})
+    EXPECT_NE(message_of(path(name)).find("attribute gonio:format: found none"), std::string::npos)
+        << message_of(path(name));
+}
+
+TEST_F(StackFileTest, WrittenByAnotherProgram) {
+  std::vector<RawPart> parts = make_parts();
+  write_parts(path("a.exr"), parts);
+  const StackFile file = load_stack(path("a.exr"));
+  EXPECT_EQ(file.name, "raw");
+  EXPECT_EQ(file.diagrams.theta_i, (std::vector<double>{0, 1}));
+  EXPECT_EQ(file.diagrams.diagrams[0].r, (std::vector<double>{0, 0.5, 1}));
+  EXPECT_EQ(file.colour.side(), 4);
+}
+
+/// What is changed in the parts of make_parts(), and what the message must name.
+struct Fault {
+  const char* name;
+  void (*apply)(std::vector<RawPart>&);
+  const char* message;
+};
+
+class FaultTest : public StackFileTest, public testing::WithParamInterface<Fault> {};
+
+TEST_P(FaultTest, IsNamed) {
+  std::vector<RawPart> parts = make_parts();
+  GetParam().apply(parts);
+  write_parts(path("a.exr"), parts);
+  const std::string message = message_of(path("a.exr"));
+  EXPECT_NE(message.find("a.exr: "), std::string::npos) << message;
+  EXPECT_NE(message.find(GetParam().message), std::string::npos) << message;
+}
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+using Parts = std::vector<RawPart>;
+const Fault faults[] = {
+    {"Version", [](Parts& p) { p[0].header.insert("gonio:format", Imf::IntAttribute(2)); },
+     "attribute gonio:format: found 2, expected 1"},
+    {"Chart", [](Parts& p) { p[0].header.insert("gonio:chart", Imf::StringAttribute("half")); },
+     "attribute gonio:chart: found half, expected outgoing"},
+    {"NoName", [](Parts& p) { p[0].header.erase("gonio:name"); }, "attribute gonio:name"},
+    {"NoLines", [](Parts& p) { p[1].header.erase("gonio:phi"); },
+     "part diagram.001: attribute gonio:phi"},
+    {"LinesOfAnotherType",
+     [](Parts& p) {
+       p[1].header.erase("gonio:r"), p[1].header.insert("gonio:r", Imf::FloatAttribute(1));
+     },
+     "part diagram.001: attribute gonio:r"},
+    {"TooFewLines",
+     [](Parts& p) { p[0].header.insert("gonio:phi", Imf::FloatVectorAttribute({0})); },
+     "part diagram.000: gonio:phi: found 1 values"},
+    {"TooManyLines",
+     [](Parts& p) {
+       p[0].header.insert("gonio:r", Imf::FloatVectorAttribute({0, 0.25f, 0.5f, 1}));
+     },
+     "part diagram.000: size: found 3 x 2, expected 4 x 2"},
+    {"LinesNotAscending",
+     [](Parts& p) {
+       p[0].header.insert("gonio:r", Imf::FloatVectorAttribute({0, 2, 1}));
+     },
+     "parallels"},
+    {"LinesNotANumber",
+     [](Parts& p) {
+       p[0].header.insert("gonio:r", Imf::FloatVectorAttribute({0, nan, 1}));
+     },
+     "parallels"},
+    {"AnglesNotAscending",
+     [](Parts& p) { p[1].header.insert("gonio:theta_i", Imf::FloatAttribute(0)); }, "theta_i[1]"},
+    {"AngleNotANumber",
+     [](Parts& p) { p[1].header.insert("gonio:theta_i", Imf::FloatAttribute(nan)); }, "theta_i[1]"},
+    {"DensityNotANumber", [](Parts& p) { p[1].pixels[3] = nan; }, "density[3]: found nan"},
+    {"DensityInfinite", [](Parts& p) { p[1].pixels[0] = std::numeric_limits<float>::infinity(); },
+     "density[0]: found inf"},
+    {"DensityNegative", [](Parts& p) { p[0].pixels[5] = -1; }, "density[5]: found -1"},
+    {"DensityZero", [](Parts& p) { p[0].pixels.assign(6, 0.0f); }, "zero everywhere"},
+    {"ColourNotANumber", [](Parts& p) { p[2].pixels[7] = nan; }, "colour: found nan"},
+    {"ColourNegative", [](Parts& p) { p[2].pixels[7] = -1; }, "colour: found -1"},
+    {"ColourChannel", [](Parts& p) { p[2].channels[1] = "H"; }, "part colour: channel G"},
+    {"ColourFirst", [](Parts& p) { std::swap(p[0].pixels, p[2].pixels), std::swap(p[0], p[2]); },
+     "attribute gonio:format"},
+    {"ColourBetween", [](Parts& p) { std::swap(p[1], p[2]); },
+     "part colour: size: found 4 x 4, expected 4 x 2"},
+    {"NoDiagram", [](Parts& p) { p.resize(1), p[0].header.setName("colour"); }, "part colour"},
+};
+
+INSTANTIATE_TEST_SUITE_P(StackFile, FaultTest, testing::ValuesIn(faults),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+TEST_F(StackFileTest, SaveRefusesWhatIsNoStack) {
+  EXPECT_THROW(save_stack(path("a.exr"), {}), Error);
+  StackFile full = make_file(1);
+  full.diagrams.diagrams[0].azimuth = Azimuth::full;
+  EXPECT_THROW(save_stack(path("a.exr"), full), Error);
+  EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+TEST_F(StackFileTest, SaveLeavesNothingHalfWritten) {
+  const StackFile file = make_file();
+  EXPECT_THROW(save_stack(path("missing/a.exr"), file), Error);
+  fs::create_directory(path("folder.exr"));
+  EXPECT_THROW(save_stack(path("folder.exr"), file), Error);
+  EXPECT_THROW(save_stack("/proc/a.exr", file), Error);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
+}
+
+}  // namespace
+}  // namespace gonio

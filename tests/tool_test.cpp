@@ -1,0 +1,589 @@
+// Runs the program GONIO_TOOL as a user does.
+
+#include <gonio/brdf/albedo.h>
+#include <gonio/brdf/bytes.h>
+#include <gonio/brdf/exr/stack_file.h>
+#include <gonio/tests/sample_tables.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <glm/common.hpp>
+#include <limits>
+#include <regex>
+#include <sstream>
+
+namespace gonio {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Outcome {
+  int code;  // exit status, or -1 if the program crashed
+  std::string out;
+  std::vector<std::string> errors;  // lines on stderr that are not progress
+};
+
+class ToolTest : public testing::Test {
+ protected:
+  ToolTest() {
+    const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
+    std::string name = std::string(test.test_suite_name()) + "_" + test.name();
+    for (char& c : name) c = c == '/' ? '_' : c;
+    folder_ = fs::path(testing::TempDir()) / (name + "_" + std::to_string(getpid()));
+    fs::create_directories(folder_);
+  }
+  ~ToolTest() override { fs::remove_all(folder_); }
+
+  fs::path path(const std::string& name) const { return folder_ / name; }
+
+  void write(const std::string& name, const std::string& bytes) const {
+    fs::remove(path(name));
+    std::ofstream(path(name), std::ios::binary) << bytes;
+  }
+
+  /// Runs the program in the test's folder.
+  Outcome execute(const std::string& arguments) const {
+    const fs::path out = fs::path(folder_) += ".out", err = fs::path(folder_) += ".err";
+    const std::string command = "cd '" + folder_.string() + "' && '" GONIO_TOOL "' " + arguments +
+                                " >'" + out.string() + "' 2>'" + err.string() + "'";
+    const int status = std::system(command.c_str());
+    Outcome run{WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_bytes(out), {}};
+    std::istringstream lines(read_bytes(err));
+    const std::regex progress("(reading|building|writing|computing|checking) .*: .*[0-9]+ s");
+    for (std::string line; std::getline(lines, line);) {
+      if (!std::regex_match(line, progress)) run.errors.push_back(line);
+    }
+    fs::remove(out);
+    fs::remove(err);
+    return run;
+  }
+
+  void expect_ok(const std::string& arguments) const {
+    const Outcome run = execute(arguments);
+    EXPECT_EQ(run.code, 0) << arguments << "\n" << testing::PrintToString(run.errors);
+    EXPECT_TRUE(run.errors.empty()) << arguments << "\n" << testing::PrintToString(run.errors);
+  }
+
+  /// Exit status 1, one line "gonio VERB: ..." on stderr with all of `parts`, and no new file.
+  Outcome expect_error(const std::string& arguments, const std::vector<std::string>& parts) const {
+    const std::vector<std::string> before = files();
+    const Outcome run = execute(arguments);
+    EXPECT_EQ(run.code, 1) << arguments;
+    EXPECT_EQ(run.errors.size(), 1u) << arguments << "\n" << testing::PrintToString(run.errors);
+    if (run.errors.size() == 1) {
+      EXPECT_EQ(run.errors[0].rfind("gonio", 0), 0u) << run.errors[0];
+      for (const std::string& part : parts) {
+        EXPECT_NE(run.errors[0].find(part), std::string::npos) << part << "\nin " << run.errors[0];
+      }
+    }
+    EXPECT_EQ(files(), before) << arguments;
+    return run;
+  }
+
+  std::vector<std::string> files() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::recursive_directory_iterator(folder_))
+      names.push_back(entry.path().string());
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+
+  fs::path folder_;
+};
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+// ---------------------------------------------------------------- usage
+
+TEST_F(ToolTest, HelpHasExamples) {
+  for (const std::string verb : {"info", "validate", "convert", "synth"}) {
+    const Outcome run = execute(verb + " --help");
+    EXPECT_EQ(run.code, 0);
+    EXPECT_TRUE(run.errors.empty());
+    EXPECT_TRUE(contains(run.out, "Examples:\n  gonio " + verb)) << run.out;
+    EXPECT_TRUE(contains(execute("--help").out, "\n  " + verb + " ")) << verb;
+  }
+  const std::string help = execute("convert --help").out;
+  const StackOptions defaults;
+  EXPECT_TRUE(contains(help, "--incident INT=" + std::to_string(defaults.incident))) << help;
+  EXPECT_TRUE(contains(help, "=" + std::to_string(defaults.bytes / 1024) + "KiB")) << help;
+  EXPECT_TRUE(contains(
+      help, "[" + std::to_string(defaults.meridians) + "x" + std::to_string(defaults.parallels)))
+      << help;
+}
+
+TEST_F(ToolTest, Version) {
+  const Outcome run = execute("--version");
+  EXPECT_EQ(run.code, 0);
+  EXPECT_TRUE(std::regex_match(run.out, std::regex("gonio [0-9]+\\.[0-9]+\\.[0-9]+\n"))) << run.out;
+}
+
+TEST_F(ToolTest, UsageErrors) {
+  write("a.mbsdf", test::sample_mbsdf());
+  expect_error("", {"gonio: ", "expected one of info, validate, convert, report, synth"});
+  expect_error("frobnicate", {"found 'frobnicate'", "info"});
+  expect_error("info", {"gonio info: ", "FILE"});
+  expect_error("info a.mbsdf b.mbsdf", {"b.mbsdf"});
+  expect_error("info a.mbsdf --bogus", {"--bogus"});
+  expect_error("info a.mbsdf --negative maybe",
+               {"--negative: found 'maybe', expected zero, fill or reject"});
+  expect_error("validate", {"FILE"});
+  expect_error("convert a.mbsdf", {"gonio convert: ", "OUT"});
+  expect_error("convert a.mbsdf b.exr --grid 40", {"--grid: found '40'"});
+  expect_error("convert a.mbsdf b.exr --grid 40x", {"--grid: found '40x'"});
+  expect_error("convert a.mbsdf b.exr --grid 1x9", {"found a size of 1 x 9"});
+  expect_error("convert a.mbsdf b.exr --incident 1", {"incident: found 1, expected at least 2"});
+  expect_error("convert a.mbsdf b.exr --incident many", {"--incident", "many"});
+  expect_error("convert a.mbsdf b.exr --bytes -5", {"--bytes: found '-5'"});
+  expect_error("convert a.mbsdf b.exr --bytes 5stones", {"--bytes: found '5stones'"});
+  expect_error("convert a.mbsdf b.exr --bytes 99999999999999999999", {"--bytes"});
+  expect_error("convert a.mbsdf b.exr --tolerance 0", {"tolerance"});
+  expect_error("convert a.mbsdf b.exr --tolerance nan", {"tolerance"});
+  expect_error("convert a.mbsdf b.mbsdf --grid 0x9", {"--grid"});
+  expect_error("convert a.mbsdf b.mbsdf --grid 99999x9", {"grid: found 99999 thetas"});
+}
+
+TEST_F(ToolTest, OptionsWithoutEffectAreRefused) {
+  write("a.mbsdf", test::sample_mbsdf());
+  expect_ok("convert a.mbsdf a.exr");
+  expect_error("convert a.mbsdf b.binary --grid 9x9", {"--grid"});
+  expect_error("convert a.mbsdf b.binary --incident 9", {"--incident"});
+  expect_error("convert a.mbsdf b.mbsdf --tolerance 0.1", {"--tolerance"});
+  expect_error("convert a.mbsdf b.mbsdf --bytes 1MiB", {"--bytes"});
+  expect_error("convert a.mbsdf b.mbsdf --negative fill", {"--negative", "as they are stored"});
+  expect_error("convert a.mbsdf b.mbsdf --phi-d 180", {"--phi-d"});
+  expect_error("convert a.mbsdf b.binary --phi-d 90", {"--phi-d", "90"});
+  expect_error("convert a.exr b.exr --incident 9", {"--incident"});
+  expect_error("convert a.exr b.exr --missing fill", {"--missing"});
+}
+
+// ---------------------------------------------------------------- outputs
+
+TEST_F(ToolTest, OutputsThatCannotBeWritten) {
+  write("a.mbsdf", test::sample_mbsdf());
+  fs::create_directory(path("folder.exr"));
+  fs::create_directory(path("read_only"));
+  fs::permissions(path("read_only"), fs::perms::owner_read | fs::perms::owner_exec);
+  // Permissions do not hold root back; /proc does.
+  const std::string read_only = geteuid() == 0 ? "/proc/" : "read_only/";
+  expect_error("convert a.mbsdf b.png",
+               {"b.png: extension: found .png, expected one of .exr, .binary, .mbsdf"});
+  expect_error("convert a.mbsdf b", {"b: extension: found none"});
+  expect_error("convert a.mbsdf missing/b.exr",
+               {"missing/b.exr: folder: found none, expected missing"});
+  expect_error("convert a.mbsdf missing/b.binary", {"missing/b.binary: folder"});
+  expect_error("convert a.mbsdf a.mbsdf/b.exr", {"a.mbsdf/b.exr: folder"});
+  expect_error("convert a.mbsdf folder.exr", {"folder.exr"});
+  for (const std::string name : {"b.exr", "b.binary", "b.mbsdf"}) {
+    expect_error("convert a.mbsdf " + read_only + name, {read_only + name});
+  }
+  expect_error("synth default -o missing/b.binary", {"missing/b.binary: folder"});
+  expect_error("synth default -o " + read_only + "b.mbsdf", {read_only + "b.mbsdf"});
+  expect_error("synth default -o b.exr",
+               {"b.exr: extension: found .exr, expected one of .binary, .mbsdf"});
+  fs::permissions(path("read_only"), fs::perms::owner_all);
+}
+
+TEST_F(ToolTest, FailureKeepsTheOldFile) {
+  write("bad.mbsdf", test::sample_mbsdf().substr(0, 200));
+  for (const std::string name : {"old.exr", "old.binary", "old.mbsdf"}) {
+    write(name, "old content");
+    expect_error("convert bad.mbsdf " + name, {"bad.mbsdf: reflection values"});
+    EXPECT_EQ(read_bytes(path(name)), "old content");
+  }
+}
+
+TEST_F(ToolTest, StandardOutputThatFails) {
+  write("a.mbsdf", test::sample_mbsdf());
+  const std::string command =
+      "'" GONIO_TOOL "' info '" + path("a.mbsdf").string() + "' >/dev/full 2>/dev/null";
+  const int status = std::system(command.c_str());
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+}
+
+// ---------------------------------------------------------------- info
+
+TEST_F(ToolTest, InfoOfTables) {
+  write("a.mbsdf", test::sample_mbsdf());
+  const std::string mbsdf = execute("info a.mbsdf").out;
+  EXPECT_TRUE(contains(mbsdf, "format      MBSDF\n")) << mbsdf;
+  EXPECT_TRUE(contains(mbsdf, "6 x 6 x 8 cells")) << mbsdf;
+  EXPECT_TRUE(contains(mbsdf, "theta_i     7.5 to 82.5")) << mbsdf;
+  EXPECT_TRUE(contains(mbsdf, std::to_string(test::sample_mbsdf().size()) + " bytes")) << mbsdf;
+  EXPECT_TRUE(std::regex_search(mbsdf, std::regex(" 30 +0\\.5000 +0\\.5000 +0\\.5000\n"))) << mbsdf;
+
+  write("a.bsdf", test::sample_rgl());
+  const std::string rgl = execute("info a.bsdf").out;
+  EXPECT_TRUE(contains(rgl, "format      RGL, RGB\n")) << rgl;
+  EXPECT_TRUE(contains(rgl, "size        3 incident angles\n")) << rgl;
+  EXPECT_TRUE(contains(rgl, "theta_i     0 to 88.81\n")) << rgl;
+  EXPECT_TRUE(contains(rgl, "description sample\n")) << rgl;
+
+  write("a.binary", test::sample_merl());
+  const std::string merl = execute("info a.binary").out;
+  EXPECT_TRUE(contains(merl, "format      MERL\n")) << merl;
+  EXPECT_TRUE(contains(merl, "size        90 x 90 x 180 cells")) << merl;
+  // 100 / 1500 pi for red.
+  EXPECT_TRUE(std::regex_search(merl, std::regex(" 30 +0\\.209. +0\\.240. +0\\.347.\n"))) << merl;
+}
+
+TEST_F(ToolTest, InfoCountsRepairedCells) {
+  std::string bytes = test::sample_mbsdf();
+  const float negative = -0.1f, bad = std::numeric_limits<float>::quiet_NaN();
+  bytes.replace(bytes.size() - 4, 4, reinterpret_cast<const char*>(&negative), 4);
+  bytes.replace(bytes.size() - 16, 4, reinterpret_cast<const char*>(&bad), 4);
+  write("a.mbsdf", bytes);
+  const std::string text = execute("info a.mbsdf --negative fill").out;
+  EXPECT_TRUE(
+      contains(text, "288, of which 1 negative (fill), 1 not finite (fill), 0 missing (fill)"))
+      << text;
+  expect_error("info a.mbsdf --negative reject",
+               {"a.mbsdf: cells: found 1 negative of 288, expected none"});
+  expect_error("convert a.mbsdf b.exr --nonfinite reject", {"a.mbsdf: cells: found 1 not finite"});
+  expect_ok("validate a.mbsdf");  // a repair is a warning
+  EXPECT_TRUE(contains(execute("validate a.mbsdf").out,
+                       "a.mbsdf: warning: cells: found 1 negative of 288"));
+}
+
+TEST_F(ToolTest, InfoOfAStack) {
+  write("a.mbsdf", test::sample_mbsdf());
+  expect_ok("convert a.mbsdf a.exr --incident 3 --grid 5x6");
+  const std::string text = execute("info a.exr").out;
+  for (const char* part : {"name        a\n", "source      a.mbsdf\n", "chart       outgoing\n",
+                           "size        3 diagrams", "theta_i     0 to 89.5\n", "in memory\n",
+                           "colour      16 x 8 cells"}) {
+    EXPECT_TRUE(contains(text, part)) << part << "\nin " << text;
+  }
+  EXPECT_TRUE(std::regex_search(text, std::regex(" 30 +0\\.50.. +0\\.50.. +0\\.50..\n"))) << text;
+  const StackFile file = load_stack(path("a.exr"));
+  for (const DiagramGrid& grid : file.diagrams.diagrams) {
+    EXPECT_LE(grid.phi.size(), 5u);
+    EXPECT_LE(grid.r.size(), 6u);
+  }
+}
+
+// ---------------------------------------------------------------- round trips
+
+TEST_F(ToolTest, MerlToMerlIsByteIdentical) {
+  expect_ok("synth default -o a.binary --noise 0.1 --measured-to 75");
+  std::string bytes = read_bytes(path("a.binary"));
+  bytes.replace(12, 8, "\x01\x02\x03\x04\x05\x06\xf8\x7f", 8);  // NaN with a payload
+  write("a.binary", bytes);
+  expect_ok("convert a.binary b.binary");
+  EXPECT_TRUE(read_bytes(path("b.binary")) == bytes);
+  // Not a copy of the file: the converter knows what it writes.
+  expect_ok("convert a.binary b.mbsdf --grid 9x9");
+  EXPECT_EQ(read_mbsdf(path("b.mbsdf")).n_phi, 9);
+}
+
+TEST_F(ToolTest, MbsdfToMbsdfKeepsTheValues) {
+  expect_ok("synth default -o a.mbsdf --noise 0.1 --measured-to 75");
+  expect_ok("convert a.mbsdf b.mbsdf");
+  EXPECT_TRUE(read_bytes(path("a.mbsdf")) == read_bytes(path("b.mbsdf")));
+}
+
+TEST_F(ToolTest, StackSurvivesBitByBit) {
+  expect_ok("synth default -o a.mbsdf");
+  expect_ok("convert a.mbsdf a.exr --bytes 20kB --tolerance 0.02");
+  expect_ok("convert a.exr b.exr");
+  EXPECT_EQ(read_bytes(path("a.exr")), read_bytes(path("b.exr")));
+  const StackFile a = load_stack(path("a.exr")), b = load_stack(path("b.exr"));
+  const auto same = [](const StackGrid& x, const StackGrid& y) {
+    EXPECT_EQ(x.theta_i, y.theta_i);
+    ASSERT_EQ(x.diagrams.size(), y.diagrams.size());
+    for (std::size_t k = 0; k < x.diagrams.size(); ++k) {
+      EXPECT_EQ(x.diagrams[k].phi, y.diagrams[k].phi);
+      EXPECT_EQ(x.diagrams[k].r, y.diagrams[k].r);
+      EXPECT_EQ(x.diagrams[k].density, y.diagrams[k].density);
+    }
+  };
+  same(a.diagrams, b.diagrams);
+  same(a.diagrams, Stack<float>(a.diagrams, Interpolation::displacement).grid());
+  EXPECT_EQ(a.colour.values(), b.colour.values());
+}
+
+TEST_F(ToolTest, StackToTableIsRefused) {
+  write("a.mbsdf", test::sample_mbsdf());
+  expect_ok("convert a.mbsdf a.exr");
+  expect_error("convert a.exr b.binary", {"a.exr: format: found a stack file, expected a table"});
+  expect_error("convert a.exr b.mbsdf", {"a.exr: format: found a stack file, expected a table"});
+}
+
+/// The largest error of a channel's albedo, relative to the strongest channel.
+double albedo_error(const BrdfTable& expected, const BrdfTable& found, int degrees) {
+  const float theta_i = static_cast<float>(degrees) * pi<float> / 180;
+  const glm::vec3 a = directional_albedo(expected, theta_i), b = directional_albedo(found, theta_i);
+  const glm::vec3 difference = glm::abs(b - a);
+  return std::max({difference.r, difference.g, difference.b}) / std::max({a.r, a.g, a.b});
+}
+
+TEST_F(ToolTest, RglToMerlKeepsTheAlbedo) {
+  const char* data = std::getenv("GONIO_TEST_DATA");
+  if (!data) GTEST_SKIP() << "GONIO_TEST_DATA is not set";
+  int count = 0;
+  double reciprocal = 0;
+  for (const auto& entry : fs::directory_iterator(fs::path(data) / "rgl")) {
+    if (entry.path().extension() != ".bsdf") continue;
+    ++count;
+    const std::string in = "'" + fs::absolute(entry.path()).string() + "'";
+    expect_ok("convert " + in + " a.binary");
+    expect_ok("convert " + in + " b.binary --phi-d 180");
+    const BrdfTable rgl = load_table(entry.path());
+    const BrdfTable merl = load_table(path("a.binary")), averaged = load_table(path("b.binary"));
+    for (const int degrees : {2, 10, 30, 50, 70, 80, 85}) {
+      // Towards the horizon the cells of MERL hold ever fewer of the directions above it.
+      EXPECT_LT(albedo_error(rgl, merl, degrees), degrees <= 70 ? 0.01 : 0.02)
+          << entry.path().stem() << " at " << degrees;
+      reciprocal = std::max(reciprocal, albedo_error(rgl, averaged, degrees));
+    }
+  }
+  EXPECT_GT(count, 0);
+  // These measurements are not reciprocal, so that 180 bins cannot hold them.
+  EXPECT_GT(reciprocal, 0.05);
+}
+
+// ---------------------------------------------------------------- synth
+
+TEST_F(ToolTest, SynthListsModels) {
+  const Outcome run = execute("synth --list");
+  EXPECT_EQ(run.code, 0);
+  for (const char* part :
+       {"ggx: ", "alpha      0.2      0.002 to 2 (slope)", "lambert: ", "default is "}) {
+    EXPECT_TRUE(contains(run.out, part)) << run.out;
+  }
+}
+
+TEST_F(ToolTest, SynthIsTheModel) {
+  expect_ok("synth lambert:albedo=0.5/0.25/0.125 -o a.binary");
+  expect_ok("synth lambert:albedo=0.5/0.25/0.125 -o a.mbsdf");
+  for (const char* name : {"a.binary", "a.mbsdf"}) {
+    const glm::vec3 albedo = directional_albedo(load_table(path(name)), 0.5f);
+    EXPECT_NEAR(albedo.r, 0.5f, 1e-3f) << name;
+    EXPECT_NEAR(albedo.g, 0.25f, 1e-3f) << name;
+    EXPECT_NEAR(albedo.b, 0.125f, 1e-3f) << name;
+    expect_ok(std::string("validate ") + name);
+    EXPECT_EQ(execute(std::string("validate ") + name).out, std::string(name) + ": ok\n");
+  }
+}
+
+TEST_F(ToolTest, SynthNoiseIsSeeded) {
+  expect_ok("synth default -o a.mbsdf --noise 0.1 --seed 3");
+  expect_ok("synth default -o b.mbsdf --noise 0.1 --seed 3");
+  expect_ok("synth default -o c.mbsdf --noise 0.1 --seed 4");
+  EXPECT_TRUE(read_bytes(path("a.mbsdf")) == read_bytes(path("b.mbsdf")));
+  EXPECT_FALSE(read_bytes(path("a.mbsdf")) == read_bytes(path("c.mbsdf")));
+}
+
+TEST_F(ToolTest, SynthLeavesHolesNearGrazing) {
+  expect_ok("synth default -o a.binary --measured-to 70");
+  EXPECT_GT(load_table(path("a.binary")).info().cells.missing, 0u);
+  expect_ok("synth default -o b.binary");
+  EXPECT_EQ(load_table(path("b.binary")).info().cells.missing, 0u);
+}
+
+TEST_F(ToolTest, SynthErrors) {
+  expect_error("synth", {"gonio synth: MODEL"});
+  expect_error("synth default", {"-o"});
+  expect_error("synth phlogiston -o a.binary", {"unknown lobe 'phlogiston'", "ggx"});
+  expect_error("synth ggx:alpha=99 -o a.binary", {"'alpha' is 99"});
+  expect_error("synth default -o a.binary --noise -1", {"--noise"});
+  expect_error("synth default -o a.binary --noise nan", {"--noise"});
+  expect_error("synth default -o a.binary --seed x", {"--seed"});
+  expect_error("synth default -o a.binary --measured-to 0", {"--measured-to"});
+  expect_error("synth default -o a.binary --measured-to 91", {"--measured-to"});
+}
+
+// ---------------------------------------------------------------- damaged files
+
+enum class Format { merl, rgl, mbsdf, stack };
+
+struct Damage {
+  const char* name;
+  Format format;
+  std::string (*make)(const std::string& good);
+  const char* message;
+};
+
+const char* extension_of(Format format) {
+  const char* extensions[] = {".binary", ".bsdf", ".mbsdf", ".exr"};
+  return extensions[static_cast<int>(format)];
+}
+
+std::string replaced(std::string bytes, std::size_t at, std::uint32_t value) {
+  return bytes.replace(at, 4, reinterpret_cast<const char*>(&value), 4);
+}
+
+std::string all_nan(std::string bytes, std::size_t from) {
+  std::fill(bytes.begin() + static_cast<std::ptrdiff_t>(from), bytes.end(), '\xff');
+  return bytes;
+}
+
+std::string half_of(const std::string& good) { return good.substr(0, good.size() / 2); }
+std::string without_last_byte(const std::string& good) { return good.substr(0, good.size() - 1); }
+std::string first_ten(const std::string& good) { return good.substr(0, 10); }
+std::string empty(const std::string&) { return ""; }
+std::string other_magic(const std::string& good) { return replaced(good, 0, 0x12345678); }
+
+std::size_t mbsdf_header(const std::string& good) { return good.find("REFLECTION=\n") + 12; }
+
+class DamageTest : public ToolTest, public testing::WithParamInterface<Damage> {
+ protected:
+  std::string good(Format format) const {
+    if (format == Format::merl) return test::sample_merl();
+    if (format == Format::rgl) return test::sample_rgl();
+    if (format == Format::mbsdf) return test::sample_mbsdf();
+    write("small.mbsdf", test::sample_mbsdf());
+    expect_ok("convert small.mbsdf small.exr --incident 2 --grid 3x3");
+    return read_bytes(path("small.exr"));
+  }
+};
+
+TEST_P(DamageTest, IsNamedAndRefused) {
+  const std::string original = good(GetParam().format);
+  const std::string extension = extension_of(GetParam().format);
+  write("good" + extension, original);
+  expect_ok("validate good" + extension);
+  expect_ok("info good" + extension);
+
+  const std::string bad = "bad" + extension;
+  write(bad, GetParam().make(original));
+  const Outcome run = expect_error("validate " + bad, {"gonio validate: unusable: " + bad});
+  EXPECT_TRUE(contains(run.out, bad + ": error: ")) << run.out;
+  EXPECT_TRUE(contains(run.out, GetParam().message)) << run.out;
+  expect_error("info " + bad, {"gonio info: " + bad + ": "});
+  for (const char* output : {"out.exr", "out.binary", "out.mbsdf"}) {
+    const bool kept = GetParam().format != Format::stack || std::string(output) == "out.exr";
+    expect_error("convert " + bad + " " + output, {kept ? bad + ": " : bad});
+  }
+}
+
+const Damage damages[] = {
+    {"MerlHalf", Format::merl, half_of, "file size: found 17496006 bytes, expected 34992012"},
+    {"MerlLastByte", Format::merl, without_last_byte, "file size: found 34992011 bytes"},
+    {"MerlHeader", Format::merl, first_ten, "format: found a file that starts with"},
+    {"MerlEmpty", Format::merl, empty, "format: found an empty file"},
+    {"MerlMagic", Format::merl, other_magic, "dimensions: found 305419896 x 90 x 180"},
+    {"MerlDimensions", Format::merl, [](const std::string& good) { return replaced(good, 8, 90); },
+     "dimensions: found 90 x 90 x 90, expected 90 x 90 x 180"},
+    {"MerlOtherVariant", Format::merl,
+     [](const std::string& good) { return replaced(good, 8, 360); },
+     "file size: found 34992012 bytes, expected 69984012"},
+    {"MerlNan", Format::merl, [](const std::string& good) { return all_nan(good, 12); },
+     "no valid one"},
+    {"MerlLonger", Format::merl, [](const std::string& good) { return good + "x"; }, "file size"},
+
+    {"RglHalf", Format::rgl, half_of, "values that lie within the file"},
+    {"RglLastByte", Format::rgl, without_last_byte, "rgb: found shape [1, 3, 3, 8, 8]"},
+    {"RglHeader", Format::rgl, first_ten, "found a file that starts with \"tensor_fil\""},
+    {"RglEmpty", Format::rgl, empty, "format: found an empty file"},
+    {"RglMagic", Format::rgl, other_magic, "format: found a file that starts with"},
+    {"RglDimensions", Format::rgl, [](const std::string&) { return test::sample_rgl(0.2f, 2); },
+     "luminance: found f32 [1, 2, 8, 8], expected f32 [1, 3, "},
+    {"RglNan", Format::rgl,
+     [](const std::string&) { return test::sample_rgl(std::numeric_limits<float>::quiet_NaN()); },
+     "no valid one"},
+    {"RglAllNan", Format::rgl,
+     [](const std::string& good) { return all_nan(good, good.find("sample") + 7); }, "not finite"},
+
+    {"MbsdfHalf", Format::mbsdf, half_of, "reflection values: found "},
+    {"MbsdfLastByte", Format::mbsdf, without_last_byte,
+     "reflection values: found 3455 bytes, expected 3456"},
+    {"MbsdfHeader", Format::mbsdf, first_ten, "format: found a file that starts with \"NVIDIA ARC"},
+    {"MbsdfEmpty", Format::mbsdf, empty, "format: found an empty file"},
+    {"MbsdfMagic", Format::mbsdf, other_magic, "format: found a file that starts with"},
+    {"MbsdfDimensions", Format::mbsdf,
+     [](const std::string& good) { return replaced(good, mbsdf_header(good) + 4, 7); },
+     "reflection values: found 3456 bytes, expected 4704"},
+    {"MbsdfHugeDimensions", Format::mbsdf,
+     [](const std::string& good) { return replaced(good, mbsdf_header(good) + 8, 0xffffffff); },
+     "reflection n_phi: found 4294967295"},
+    {"MbsdfType", Format::mbsdf,
+     [](const std::string& good) { return replaced(good, mbsdf_header(good), 9); },
+     "reflection type: found 9"},
+    {"MbsdfNan", Format::mbsdf,
+     [](const std::string& good) { return all_nan(good, mbsdf_header(good) + 12); },
+     "no valid one"},
+
+    {"StackHalf", Format::stack, half_of, "stack file: found "},
+    {"StackLastByte", Format::stack, without_last_byte, "stack file: found "},
+    {"StackHeader", Format::stack, first_ten, "stack file: found "},
+    {"StackEmpty", Format::stack, empty, "format: found an empty file"},
+    {"StackMagic", Format::stack, other_magic, "format: found a file that starts with"},
+    {"StackDimensions", Format::stack,
+     [](const std::string& good) {
+       const std::string name("dataWindow\0box2i\0", 17);
+       return replaced(good, good.find(name) + name.size() + 4 + 8, 63);
+     },
+     "stack file: found "},
+    {"StackVersion", Format::stack,
+     [](const std::string& good) {
+       const std::string name("gonio:format\0int\0", 17);
+       return replaced(good, good.find(name) + name.size() + 4, 7);
+     },
+     "attribute gonio:format: found 7, expected 1"},
+};
+
+INSTANTIATE_TEST_SUITE_P(Tool, DamageTest, testing::ValuesIn(damages),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+TEST_F(ToolTest, ValidateNamesAMisleadingExtension) {
+  write("a.mbsdf", test::sample_mbsdf());
+  expect_ok("convert a.mbsdf a.exr --incident 2");
+  const std::string stack = read_bytes(path("a.exr"));
+  const std::pair<std::string, std::string> cases[] = {{test::sample_mbsdf(), ".mbsdf"},
+                                                       {test::sample_rgl(), ".bsdf"},
+                                                       {test::sample_merl(), ".binary"},
+                                                       {stack, ".exr"}};
+  for (const auto& [bytes, right] : cases) {
+    for (const std::string wrong : {".mbsdf", ".bsdf", ".binary", ".exr"}) {
+      if (wrong == right) continue;
+      write("b" + wrong, bytes);
+      const Outcome run = expect_error("validate b" + wrong, {"unusable: b" + wrong});
+      EXPECT_TRUE(contains(
+          run.out, "b" + wrong + ": error: extension: found " + wrong + ", expected " + right))
+          << run.out;
+      expect_ok("info b" + wrong);  // known by its content
+    }
+    write("b.data", bytes);
+    expect_ok("validate b.data");  // a name that promises nothing
+  }
+}
+
+TEST_F(ToolTest, ValidateGoesOnAfterABadFile) {
+  write("a.mbsdf", test::sample_mbsdf());
+  write("b.mbsdf", "");
+  const Outcome run =
+      expect_error("validate missing b.mbsdf a.mbsdf .", {"unusable: missing, b.mbsdf, ."});
+  EXPECT_TRUE(contains(run.out, "missing: error: ")) << run.out;
+  EXPECT_TRUE(contains(run.out, "b.mbsdf: error: ")) << run.out;
+  EXPECT_TRUE(contains(run.out, "a.mbsdf: ok\n")) << run.out;
+  EXPECT_TRUE(contains(run.out, ".: error: ")) << run.out;
+}
+
+TEST_F(ToolTest, ValidateDoubtsAStack) {
+  write("a.mbsdf", test::sample_mbsdf());
+  expect_ok("convert a.mbsdf a.exr --incident 3");
+  StackFile file = load_stack(path("a.exr"));
+  file.colour = {};
+  file.diagrams.theta_i = {0, 0.1, 0.2};
+  for (double& density : file.diagrams.diagrams[1].density) density *= 2;
+  save_stack(path("b.exr"), file);
+  const Outcome run = execute("validate b.exr");
+  EXPECT_EQ(run.code, 0);
+  for (const char* part :
+       {"warning: diagram 1: found densities with integral 2,",
+        "warning: theta_i: found a last diagram at 11.46", "warning: colour: found none"}) {
+    EXPECT_TRUE(contains(run.out, part)) << run.out;
+  }
+}
+
+}  // namespace
+}  // namespace gonio
