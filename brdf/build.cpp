@@ -74,15 +74,17 @@ class Growth {
     build(start);
     while (split_worst()) {
     }
+    estimate_errors();
   }
 
   bool out_of_bytes() const { return out_of_bytes_; }
 
-  /// The largest estimate of relvar between two angles.
-  double worst() const {
-    double worst = 0;
-    for (const auto& [angle, error] : error_) worst = std::max(worst, error);
-    return worst;
+  /// The mean over the angles of the estimates of relvar. (The worst would say little: it is often
+  /// that of an angle where the table is noise and no stack does better.)
+  double mean_error() const {
+    double sum = 0;
+    for (const auto& [angle, error] : error_) sum += error * (std::next(built_.find(angle))->first - angle);
+    return sum / (built_.rbegin()->first - built_.begin()->first);
   }
 
   StackGrid take() {
@@ -196,13 +198,13 @@ StackGrid build_stack(const BrdfTable& table, const StackOptions& options, const
   StackOptions attempt = options;
   std::optional<StackGrid> best;
   double best_error = std::numeric_limits<double>::infinity();
-  for (bool improved = true; improved; attempt.tolerance *= 3) {
+  for (bool more = true; more; attempt.tolerance *= 2) {
     Growth growth(table, attempt, progress);
-    improved = growth.worst() < best_error && growth.out_of_bytes();
-    if (growth.worst() < best_error) {
-      best_error = growth.worst();
-      best = growth.take();
-    }
+    const bool better = growth.mean_error() < best_error;
+    more = better && growth.out_of_bytes();
+    if (!better) break;
+    best_error = growth.mean_error();
+    best = growth.take();
   }
   if (progress) progress(1);
   return *best;

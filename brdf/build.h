@@ -31,7 +31,7 @@ double transfer_density(const BrdfTable& table, double theta_i, Polar<double> at
 /// Builds the diagrams of a table: each fitted to its incident angle (fit_diagram()), the angles
 /// placed where displacement between their neighbours fails, measured by the relative variance at
 /// three angles between them. If the bytes do not suffice for the tolerance, it is relaxed as long as that
-/// lowers the worst error. Deterministic. Uses all cores; the result does not depend on their number.
+/// lowers the mean error. Deterministic. Uses all cores; the result does not depend on their number.
 ///
 /// A table that reflects nothing at an angle gets a cosine lobe there.
 /// @throws Error for sizes out of range.

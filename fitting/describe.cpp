@@ -100,6 +100,10 @@ std::optional<Slot> find_parameter(Lobe& lobe, const std::string& name) {
 
 void assign(Lobe& lobe, const std::string& name, std::string_view text) {
   if (lobe.specular() && lobe.fresnel == Fresnel::schlick && (name == "eta" || name == "k")) {
+    const Lobe untouched = Lobe::initial(lobe.kind);
+    if (lobe.color != untouched.color) {
+      throw Error("model description: a lobe has both " + in_quotes(name) + " and F0 or F90");
+    }
     const auto shape = lobe.shape;
     lobe = Lobe::initial(lobe.kind, Fresnel::conductor);
     lobe.shape = shape;

@@ -46,10 +46,10 @@ struct FitOptions {
   int max_iterations = 80;  ///< of each local optimisation; most need 10 to 40
 
   /// Samples of theta_h in [0, 90] degrees (spaced as the square), theta_d in [0, 90] and phi_d in
-  /// [0, 180]; two thirds of them have both directions inside the cut-off. 90, 18: a MERL table is
+  /// [0, 180]; half of them have both directions inside the cut-off. 90, 10: a MERL table is
   /// read at centres of its cells, where nothing is interpolated, and a lobe of alpha = 0.005 is
   /// resolved.
-  int theta_h = 90, theta_d = 18, phi_d = 6;
+  int theta_h = 90, theta_d = 10, phi_d = 6;
 };
 
 enum class Termination { converged, iteration_limit, failed };

@@ -64,10 +64,11 @@ std::vector<double> solve_channel(const std::vector<FitSample>& samples, Compres
         for (size_t i = 0; i < n; ++i) model += row[i] * x[i];
       }
       const double difference = model - target;
-      const double slope =
-          std::fabs(difference) > 1e-6 * (model + target) + 1e-12
-              ? (compress(compression, model) - compress(compression, target)) / difference
-              : compress_slope(compression, target);
+      double slope = 0;
+      const double compressed = compress(compression, target, &slope);
+      if (std::fabs(difference) > 1e-6 * (model + target) + 1e-12) {
+        slope = (compress(compression, model) - compressed) / difference;
+      }
       const double weight = samples[s].weight * samples[s].weight * slope * slope;
       for (size_t i = 0; i < n; ++i) {
         atb[i] += weight * row[i] * target;

@@ -9,30 +9,21 @@ namespace {
 constexpr double cube_root_offset = 1e-4, log_factor = 1000;
 }
 
-double compress(Compression compression, double x) noexcept {
+double compress(Compression compression, double x, double* slope) noexcept {
   switch (compression) {
     case Compression::none:
+      if (slope) *slope = 1;
       return x;
-    case Compression::cube_root:
-      return std::cbrt(x + cube_root_offset);
-    case Compression::log:
-      break;
-  }
-  return std::log1p(log_factor * x);
-}
-
-double compress_slope(Compression compression, double x) noexcept {
-  switch (compression) {
-    case Compression::none:
-      return 1;
     case Compression::cube_root: {
       const double root = std::cbrt(x + cube_root_offset);
-      return 1 / (3 * root * root);
+      if (slope) *slope = 1 / (3 * root * root);
+      return root;
     }
     case Compression::log:
       break;
   }
-  return log_factor / (1 + log_factor * x);
+  if (slope) *slope = log_factor / (1 + log_factor * x);
+  return std::log1p(log_factor * x);
 }
 
 std::vector<FitSample> fit_samples(const BrdfFunction& f, const FitOptions& options) {
@@ -194,9 +185,11 @@ bool SampleResidual::Evaluate(double const* const* parameters, double* residuals
   }
   for (int c = 0; c < 3; ++c) {
     const double g = sum[c] * sample_.angles.cos_o;
-    residuals[c] = sample_.weight * (compress(compression_, g) - target_[c]);
+    double slope = 0;
+    residuals[c] =
+        sample_.weight * (compress(compression_, g, jacobian ? &slope : nullptr) - target_[c]);
     if (!jacobian) continue;
-    const double slope = sample_.weight * compress_slope(compression_, g) * sample_.angles.cos_o;
+    slope *= sample_.weight * sample_.angles.cos_o;
     for (int k = 0; k < n; ++k) jacobian[c * n + k] *= slope;
   }
   return true;

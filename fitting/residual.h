@@ -18,9 +18,8 @@ struct FitSample {
 /// The pairs of a half-difference grid inside the cut-off.
 std::vector<FitSample> fit_samples(const BrdfFunction& f, const FitOptions& options);
 
-/// C(x) and its derivative.
-double compress(Compression compression, double x) noexcept;
-double compress_slope(Compression compression, double x) noexcept;
+/// C(x), and its derivative where it is asked for.
+double compress(Compression compression, double x, double* slope = nullptr) noexcept;
 
 /// Where each parameter of a model lies in the vector that Ceres sees: per lobe the shape
 /// parameters (one or three values each) and then the colours (three each). Logarithmic ones are

@@ -267,12 +267,22 @@ TEST_F(StackFileTest, WrittenByAnotherProgram) {
   EXPECT_EQ(file.colour.side(), 4);
 }
 
+/// The header without one attribute. (Imf::Header::erase of OpenEXR 3.1 leaks it.)
+Imf::Header without(const Imf::Header& header, const std::string& name) {
+  Imf::Header result;
+  for (auto it = header.begin(); it != header.end(); ++it)
+    if (it.name() != name) result.insert(it.name(), it.attribute());
+  return result;
+}
+
 /// What is changed in the parts of make_parts(), and what the message must name.
 struct Fault {
   const char* name;
   void (*apply)(std::vector<RawPart>&);
   const char* message;
 };
+
+void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
 
 class FaultTest : public StackFileTest, public testing::WithParamInterface<Fault> {};
 
@@ -293,12 +303,14 @@ const Fault faults[] = {
      "attribute gonio:format: found 2, expected 1"},
     {"Chart", [](Parts& p) { p[0].header.insert("gonio:chart", Imf::StringAttribute("half")); },
      "attribute gonio:chart: found half, expected outgoing"},
-    {"NoName", [](Parts& p) { p[0].header.erase("gonio:name"); }, "attribute gonio:name"},
-    {"NoLines", [](Parts& p) { p[1].header.erase("gonio:phi"); },
+    {"NoName", [](Parts& p) { p[0].header = without(p[0].header, "gonio:name"); },
+     "attribute gonio:name"},
+    {"NoLines", [](Parts& p) { p[1].header = without(p[1].header, "gonio:phi"); },
      "part diagram.001: attribute gonio:phi"},
     {"LinesOfAnotherType",
      [](Parts& p) {
-       p[1].header.erase("gonio:r"), p[1].header.insert("gonio:r", Imf::FloatAttribute(1));
+       p[1].header = without(p[1].header, "gonio:r"),
+       p[1].header.insert("gonio:r", Imf::FloatAttribute(1));
      },
      "part diagram.001: attribute gonio:r"},
     {"TooFewLines",

@@ -8,11 +8,6 @@
 #include <cstdint>
 
 namespace gonio {
-namespace {
-
-constexpr const char* policy_options[] = {"--negative", "--nonfinite", "--missing"};
-
-}  // namespace
 
 const char* to_string(CellPolicy policy) noexcept {
   switch (policy) {
@@ -40,14 +35,9 @@ void add_cell_policies(CLI::App& verb, CellPolicies& policies) {
         ->default_str(to_string(policy))
         ->group("Cells that cannot be a BRDF value");
   };
-  add(policy_options[0], policies.negative, "Cells with a negative value");
-  add(policy_options[1], policies.nonfinite, "Cells with NaN or infinity");
-  add(policy_options[2], policies.missing, "Cells marked as not measured (MERL: negative)");
-}
-
-bool cell_policies_given(const CLI::App& verb) {
-  return std::any_of(std::begin(policy_options), std::end(policy_options),
-                     [&](const char* name) { return verb.count(name) > 0; });
+  add("--negative", policies.negative, "Cells with a negative value");
+  add("--nonfinite", policies.nonfinite, "Cells with NaN or infinity");
+  add("--missing", policies.missing, "Cells marked as not measured (MERL: negative)");
 }
 
 void add_stack_options(CLI::App& verb, StackOptions& stack) {

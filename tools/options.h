@@ -15,9 +15,6 @@ namespace gonio {
 /// `policies` must outlive the parsing.
 void add_cell_policies(CLI::App& verb, CellPolicies& policies);
 
-/// True if one of them was given.
-bool cell_policies_given(const CLI::App& verb);
-
 /// "zero", "fill" or "reject".
 const char* to_string(CellPolicy policy) noexcept;
 
