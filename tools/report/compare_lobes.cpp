@@ -57,7 +57,7 @@ std::optional<LobeComparison> compare_lobes(const MaterialReport& material) {
   c.samples = mean_relvar(*best) / mean_relvar(*stack);
   c.equal_time = cost(*best) / cost(*stack);
   c.equal_bytes = mean_relvar(*best) / mean_relvar(*small);
-  c.enough = c.equal_time <= lobes_enough_factor;
+  c.enough = c.equal_time <= lobes_enough_factor || mean_relvar(*best) <= lobes_enough_relvar;
   return c;
 }
 

@@ -13,12 +13,16 @@ struct LobeComparison {
   double samples = 0;        ///< its variance over that of `displacement`
   double equal_time = 0;     ///< its time x variance over that of `displacement`
   double equal_bytes = 0;    ///< its variance over that of `displacement_small`
-  bool enough = false;       ///< equal_time <= lobes_enough_factor
+  bool enough = false;       ///< equal_time <= lobes_enough_factor, or variance <= lobes_enough_relvar
 };
 
 /// Fitted lobes are called enough if, at equal time, they have at most this many times the variance
 /// of a stack.
 inline constexpr double lobes_enough_factor = 2;
+
+/// And they are called enough whatever the stack reaches if their relative variance is this small:
+/// light that varies over the hemisphere adds more.
+inline constexpr double lobes_enough_relvar = 0.01;
 
 /// Empty without both kinds of methods (a stack file has no lobes).
 std::optional<LobeComparison> compare_lobes(const MaterialReport& material);
