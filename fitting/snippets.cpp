@@ -124,8 +124,9 @@ std::string mitsuba_snippet(const LobeModel& model) {
     if (lobe.fresnel == Fresnel::conductor && all.size() == 1) {
       // A plain <rgb> is refused above 1.
       const auto unbounded = [&](const char* name, const glm::dvec3& value) {
-        out << indent << "  <spectrum name=\"" << name << "\" type=\"srgb\"><rgb name=\"color\" value=\""
-            << rgb(value, ", ") << "\"/><boolean name=\"unbounded\" value=\"true\"/></spectrum>\n";
+        out << indent << "  <spectrum name=\"" << name
+            << "\" type=\"srgb\"><rgb name=\"color\" value=\"" << rgb(value, ", ")
+            << "\"/><boolean name=\"unbounded\" value=\"true\"/></spectrum>\n";
       };
       unbounded("eta", lobe.color[0]);
       unbounded("k", lobe.color[1]);

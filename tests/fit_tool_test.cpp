@@ -35,8 +35,8 @@ class FitToolTest : public testing::Test {
   }
 
   Outcome execute(const std::string& arguments) const {
-    const std::string command = "cd '" + folder_.path().string() + "' && '" GONIO_TOOL "' " +
-                                arguments + " >.out 2>.err";
+    const std::string command =
+        "cd '" + folder_.path().string() + "' && '" GONIO_TOOL "' " + arguments + " >.out 2>.err";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_bytes(path(".out")),
             read_bytes(path(".err"))};
@@ -89,7 +89,8 @@ TEST_F(FitToolTest, WritesTheModelThatMadeTheTable) {
 TEST_F(FitToolTest, AutoTakesAsManyLobesAsHelp) {
   write_table("one.mbsdf", one_lobe);
   write_table("two.mbsdf", two_lobes);
-  EXPECT_TRUE(contains(expect_ok("fit two.mbsdf -o two.json"), "the fewest within 10 % of the best"));
+  EXPECT_TRUE(
+      contains(expect_ok("fit two.mbsdf -o two.json"), "the fewest within 10 % of the best"));
   EXPECT_GE(load_model(path("two.json")).specular_count(), 2);
   expect_ok("fit two.mbsdf --model ggx+lambert -o one.json");
   EXPECT_EQ(load_model(path("one.json")).specular_count(), 1);
@@ -109,7 +110,8 @@ TEST_F(FitToolTest, OptionsReachTheFit) {
   EXPECT_NEAR(alphas("separate.json").b, 0.6, 0.05);
   EXPECT_TRUE(contains(expect_ok("fit a.mbsdf --model ggx+lambert --cutoff 60"), "to 60 deg"));
   const std::string help = expect_ok("fit --help");
-  EXPECT_TRUE(contains(help, "--cutoff DEGREES [75]") || contains(help, "--cutoff DEGREES=75")) << help;
+  EXPECT_TRUE(contains(help, "--cutoff DEGREES [75]") || contains(help, "--cutoff DEGREES=75"))
+      << help;
 }
 
 TEST_F(FitToolTest, WritesATableOfErrors) {
@@ -140,7 +142,8 @@ TEST_F(FitToolTest, RefusesWhatItCannotDo) {
   expect_ok("convert a.mbsdf a.exr --incident 3");
   expect_error("fit a.mbsdf --model nosuch -o x.json", "unknown lobe 'nosuch'");
   expect_error("fit a.mbsdf --cutoff 0 -o x.json", "--cutoff: found 0");
-  expect_error("fit a.mbsdf --channels many -o x.json", "--channels: found 'many', expected shared");
+  expect_error("fit a.mbsdf --channels many -o x.json",
+               "--channels: found 'many', expected shared");
   expect_error("fit a.mbsdf --starts -1 -o x.json", "starts");
   expect_error("fit a.mbsdf a.mbsdf -o x.json", "IN: found 2, expected one, or --table");
   expect_error("fit a.mbsdf -o x.json --table x.md", "-o: found one, expected none");

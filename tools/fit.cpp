@@ -58,8 +58,8 @@ TableFits fit_file(const Options& options, const std::string& input) {
 
 void print_errors(const char* label, double FitErrors::*measure, const char* unit,
                   const FitErrorReport& errors) {
-  std::printf("  %-22s %-11.3g %-11.3g %s\n", label, errors.inside.*measure,
-              errors.beyond.*measure, unit);
+  std::printf("  %-22s %-11.3g %-11.3g %s\n", label, errors.inside.*measure, errors.beyond.*measure,
+              unit);
 }
 
 void print_fit(const Options& options, const StageFit& stage, double seconds) {
@@ -72,8 +72,8 @@ void print_fit(const Options& options, const StageFit& stage, double seconds) {
   for (const ParameterSpread& p : s.parameters) {
     std::printf("  %-22s %-11.5g %.5g to %.5g\n", p.name.c_str(), p.value, p.min, p.max);
   }
-  std::printf("  %-22s %-11s %s\n", "error", ("to " + number(options.cutoff_degrees) + " deg").c_str(),
-              "beyond");
+  std::printf("  %-22s %-11s %s\n", "error",
+              ("to " + number(options.cutoff_degrees) + " deg").c_str(), "beyond");
   const FitErrorReport& e = stage.errors;
   print_errors("cosine-weighted RMS", &FitErrors::cosine_rms, "1/sr", e);
   print_errors("log RMS", &FitErrors::log_rms, "natural logarithm", e);
@@ -154,7 +154,8 @@ void fit_verb(Options& options) {
   options.fit.grazing_cutoff = options.cutoff_degrees * pi<double> / 180;
   options.fit.solid_angle_weights = !options.samples_count_alike;
   if (!options.table.empty()) {
-    if (!options.out.empty()) throw Error("-o: found one, expected none: --table keeps errors only");
+    if (!options.out.empty())
+      throw Error("-o: found one, expected none: --table keeps errors only");
     fit_to_table(options);
     return;
   }
@@ -219,9 +220,11 @@ void add_fit(CLI::App& app) {
                            {"log", Compression::log}},
                           fit.compression, "What is compared: f_r cos, its cube root or logarithm");
   add_choice<bool>(*verb, "--weights", {{"solid-angle", false}, {"samples", true}},
-                   options->samples_count_alike, "What a pair counts: its solid angles, or all alike");
-  verb->add_option("--robust", fit.robust_width,
-                   "Width of a Huber loss in compressed units, 0 is least squares; 0.05 suits noise")
+                   options->samples_count_alike,
+                   "What a pair counts: its solid angles, or all alike");
+  verb->add_option(
+          "--robust", fit.robust_width,
+          "Width of a Huber loss in compressed units, 0 is least squares; 0.05 suits noise")
       ->capture_default_str();
   verb->add_option("--starts", fit.starts, "Random starts for each number of lobes")
       ->capture_default_str();

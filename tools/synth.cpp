@@ -82,8 +82,9 @@ void synth(Options& options) {
 void add_synth(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* verb = app.add_subcommand("synth", "A table computed from an analytic model");
-  verb->add_option("MODEL", options->model,
-                   "'default', lobes joined by + with their parameters (see --list), or a fit.json");
+  verb->add_option(
+      "MODEL", options->model,
+      "'default', lobes joined by + with their parameters (see --list), or a fit.json");
   verb->add_option("-o,--output", options->out, "File to write: MERL (.binary) or MBSDF (.mbsdf)")
       ->type_name("OUT");
   verb->add_flag("--list", options->list, "Lists lobes and parameters");

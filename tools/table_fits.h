@@ -19,13 +19,13 @@ struct StageFit {
 
 struct TableFits {
   std::vector<StageFit> stages;  ///< with one specular lobe, two, and so on
-  double seconds = 0;            ///< of all fits together, which build on each other; not the errors
+  double seconds = 0;  ///< of all fits together, which build on each other; not the errors
 };
 
 TableFits fit_table(const BrdfTable& table, const LobeModel& form, const FitOptions& options = {});
 
-/// More lobes are worth it only as long as the relative L1 error inside the cut-off falls: the first
-/// stage within this factor of the best one is enough.
+/// More lobes are worth it only as long as the relative L1 error inside the cut-off falls: the
+/// first stage within this factor of the best one is enough.
 inline constexpr double enough_factor = 1.1;
 
 /// The index of that stage.

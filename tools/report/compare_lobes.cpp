@@ -1,3 +1,4 @@
+#include <gonio/fitting/model.h>
 #include <gonio/tools/report/compare_lobes.h>
 
 #include <algorithm>
@@ -39,6 +40,23 @@ std::string number(double x, int digits = 2) {
   return text.str();
 }
 
+/// To four digits, for reading.
+std::string rounded(const std::string& description) {
+  LobeModel model = parse_model(description);
+  const auto round = [](glm::dvec3& v) {
+    for (int c = 0; c < 3; ++c) {
+      std::ostringstream text;
+      text << std::setprecision(4) << v[c];
+      v[c] = std::stod(text.str());
+    }
+  };
+  for (Lobe& lobe : model.lobes) {
+    for (glm::dvec3& v : lobe.shape) round(v);
+    for (glm::dvec3& v : lobe.color) round(v);
+  }
+  return describe(model);
+}
+
 std::string times(double ratio) { return number(ratio) + "×"; }
 
 }  // namespace
@@ -78,13 +96,13 @@ void write_lobes(std::ostream& out, const MaterialReport& material) {
     if (c->enough) {
       out << "for this material a " << lobes << " is enough**";
     } else {
-      out << "for this material a " << lobes << " costs " << times(c->samples)
-          << " the samples of the stack**";
+      out << "for this material a " << lobes << " costs " << times(c->samples) << " the samples**";
     }
     out << ": mean relvar from 2° to 70° is " << number(mean_relvar(best)) << " (`" << c->lobes
         << "`, " << number(best.ns.sample) << " ns, " << best.bytes << " bytes) against "
         << number(mean_relvar(stack)) << " (`displacement`, " << number(stack.ns.sample) << " ns, "
-        << stack.bytes << " bytes). At equal time the lobes have " << times(c->equal_time)
+        << stack.bytes << " bytes): " << times(c->samples)
+        << " the samples for equal noise. At equal time the lobes have " << times(c->equal_time)
         << " the variance; at about equal bytes, against a stack of " << small.bytes << " bytes, "
         << times(c->equal_bytes) << ".\n";
   }
@@ -92,7 +110,7 @@ void write_lobes(std::ostream& out, const MaterialReport& material) {
   out << "\n| fitted model | RMS | log RMS | L1 | albedo | ΔE | RMS beyond | log RMS beyond | L1 "
          "beyond | albedo beyond | ΔE beyond |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const nlohmann::json& fit : material.fits) {
-    out << "| `" << fit["model"].get<std::string>() << '`';
+    out << "| `" << rounded(fit["model"].get<std::string>()) << '`';
     for (const char* part : {"inside_cutoff", "beyond_cutoff"}) {
       for (const char* key : {"cosine_rms", "log_rms", "relative_l1", "albedo", "delta_e_2000"})
         out << " | " << number(fit["errors"][part][key].get<double>(), 3);

@@ -6,14 +6,14 @@
 
 namespace gonio {
 
-/// What fitted lobes cost as samplers of the table, beside stacks. Relative variances are means over
-/// the report's angles up to 70 degrees.
+/// What fitted lobes cost as samplers of the table, beside stacks. Relative variances are means
+/// over the report's angles up to 70 degrees.
 struct LobeComparison {
-  std::string lobes;         ///< the method with the least time x variance
-  double samples = 0;        ///< its variance over that of `displacement`
-  double equal_time = 0;     ///< its time x variance over that of `displacement`
-  double equal_bytes = 0;    ///< its variance over that of `displacement_small`
-  bool enough = false;       ///< equal_time <= lobes_enough_factor, or variance <= lobes_enough_relvar
+  std::string lobes;       ///< the method with the least time x variance
+  double samples = 0;      ///< its variance over that of `displacement`
+  double equal_time = 0;   ///< its time x variance over that of `displacement`
+  double equal_bytes = 0;  ///< its variance over that of `displacement_small`
+  bool enough = false;  ///< equal_time <= lobes_enough_factor, or variance <= lobes_enough_relvar
 };
 
 /// Fitted lobes are called enough if, at equal time, they have at most this many times the variance
