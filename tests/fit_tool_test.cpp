@@ -152,6 +152,8 @@ TEST_F(FitToolTest, RefusesWhatItCannotDo) {
   expect_error("fit a.mbsdf -o x.txt", "extension: found .txt, expected one of .json");
   expect_error("fit a.exr -o x.json", "found a stack file");
   expect_error("fit missing.mbsdf -o x.json", "missing.mbsdf");
+  write_table("black.mbsdf", "lambert:albedo=0");
+  expect_error("fit black.mbsdf -o x.json", "black.mbsdf: ");
   EXPECT_FALSE(std::filesystem::exists(path("x.json")));
   EXPECT_FALSE(std::filesystem::exists(path("x.md")));
 }

@@ -53,7 +53,11 @@ TableFits fit_file(const Options& options, const std::string& input) {
   const ProgressLine progress("fitting " + input);
   const BrdfTable table = load_input(input, options.policies);
   const LobeModel form = parse_model(options.model == "auto" ? default_fit_form : options.model);
-  return fit_table(table, form, options.fit);
+  try {
+    return fit_table(table, form, options.fit);
+  } catch (const Error& error) {
+    throw Error(input + ": " + error.what());
+  }
 }
 
 void print_errors(const char* label, double FitErrors::*measure, const char* unit,

@@ -12,6 +12,7 @@
 #include <gonio/brdf/parallel.h>
 #include <gonio/fitting/fit_json.h>
 #include <gonio/fitting/lobe_sampler.h>
+#include <gonio/mapping/error.h>
 #include <gonio/tools/input.h>
 #include <gonio/tools/table_fits.h>
 
@@ -76,9 +77,14 @@ double seconds_since(Clock::time_point start) {
 }
 
 /// Adds the fits to the report and their samplers, lobes1 to lobes3, to the bench. Returns the
-/// bytes of the largest of them.
+/// bytes of the largest of them; 0 if there is nothing to fit, the table being black.
 std::size_t add_lobes(const std::shared_ptr<const BrdfTable>& table, MaterialReport& material, Bench& bench) {
-  const TableFits fits = fit_table(*table, parse_model(default_fit_form));
+  TableFits fits;
+  try {
+    fits = fit_table(*table, parse_model(default_fit_form));
+  } catch (const Error&) {
+    return 0;
+  }
   std::size_t bytes = 0;
   for (const StageFit& stage : fits.stages) {
     const LobeModel& model = stage.fit.model;
@@ -145,7 +151,8 @@ MaterialReport measure_material(const std::filesystem::path& path, const ReportO
     const auto sampler = std::make_shared<const Sampler>(table, grid, interpolation);
     bench.add<Sampler>(to_string(interpolation), "outgoing", stack_params(sampler->stack()), build.count(), sampler);
   }
-  add_small_stack(table, add_lobes(table, material, bench), bench);
+  if (const std::size_t bytes = add_lobes(table, material, bench); bytes > 0)
+    add_small_stack(table, bytes, bench);
   material.methods = bench.run([&](double done) { progress(building + (1 - building) * done); });
   material.stack.emplace(grid, Interpolation::displacement);
   return material;
