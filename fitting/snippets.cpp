@@ -122,8 +122,14 @@ std::string mitsuba_snippet(const LobeModel& model) {
         << "\"/>\n"
         << indent << "  <float name=\"alpha\" value=\"" << lobe.shape[0].r << "\"/>\n";
     if (lobe.fresnel == Fresnel::conductor && all.size() == 1) {
-      out << indent << "  <rgb name=\"eta\" value=\"" << rgb(lobe.color[0], ", ") << "\"/>\n"
-          << indent << "  <rgb name=\"k\" value=\"" << rgb(lobe.color[1], ", ") << "\"/>\n";
+      // A plain <rgb> is refused above 1.
+      const auto unbounded = [&](const char* name, const glm::dvec3& value) {
+        out << indent << "  <spectrum name=\"" << name
+            << "\" type=\"srgb\"><rgb name=\"color\" value=\"" << rgb(value, ", ")
+            << "\"/><boolean name=\"unbounded\" value=\"true\"/></spectrum>\n";
+      };
+      unbounded("eta", lobe.color[0]);
+      unbounded("k", lobe.color[1]);
     } else {
       out << indent << "  <string name=\"material\" value=\"none\"/>\n"
           << indent << "  <rgb name=\"specular_reflectance\" value=\""

@@ -157,6 +157,11 @@ TEST(Snippets, ExistWhereTheModelDoes) {
   EXPECT_NE(mitsuba.find("<float name=\"weight\" value=\"0.75\"/>"), std::string::npos) << mitsuba;
   EXPECT_NE(pbrt_snippet(parse_model("ggx:eta=0.2,k=3")).find("\"rgb eta\" [0.2 0.2 0.2]"),
             std::string::npos);
+  // A plain rgb above 1 is refused by Mitsuba.
+  EXPECT_NE(mitsuba_snippet(parse_model("ggx:eta=0.2,k=3"))
+                .find("<spectrum name=\"k\" type=\"srgb\"><rgb name=\"color\" value=\"3, 3, 3\"/>"
+                      "<boolean name=\"unbounded\" value=\"true\"/></spectrum>"),
+            std::string::npos);
 
   EXPECT_EQ(pbrt_snippet(parse_model("ward+lambert")), "");
   EXPECT_EQ(pbrt_snippet(parse_model("beckmann")), "");

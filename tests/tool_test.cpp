@@ -143,7 +143,7 @@ void expect_near(const glm::vec3& found, const glm::vec3& expected, float tolera
 // ---------------------------------------------------------------- usage
 
 TEST_F(ToolTest, HelpHasExamples) {
-  for (const std::string verb : {"info", "validate", "convert", "synth", "report"}) {
+  for (const std::string verb : {"info", "validate", "convert", "synth", "report", "fit"}) {
     const Outcome run = execute(verb + " --help");
     EXPECT_EQ(run.code, 0);
     EXPECT_TRUE(run.errors.empty());
@@ -167,7 +167,7 @@ TEST_F(ToolTest, Version) {
 
 TEST_F(ToolTest, UsageErrors) {
   write("a.mbsdf", sample_mbsdf());
-  expect_error("", {"gonio: ", "expected one of info, validate, convert, report, synth"});
+  expect_error("", {"gonio: ", "expected one of info, validate, convert, report, synth, fit"});
   expect_error("frobnicate", {"found 'frobnicate'", "info"});
   expect_error("info", {"gonio info: ", "FILE"});
   expect_error("info a.mbsdf b.mbsdf", {"b.mbsdf"});

@@ -1,8 +1,10 @@
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/brdf/sniff.h>
 #include <gonio/brdf/write.h>
+#include <gonio/fitting/synth.h>
 #include <gonio/mapping/error.h>
 #include <gonio/tools/convert.h>
+#include <gonio/tools/input.h>
 #include <gonio/tools/options.h>
 #include <gonio/tools/progress.h>
 
@@ -41,7 +43,7 @@ void table_to_stack(const Options& options) {
   StackFile file;
   {
     ProgressLine progress("building the stack of " + options.in);
-    const BrdfTable table = load_table(options.in, options.policies);
+    const BrdfTable table = load_input(options.in, options.policies);
     const Stack<float> stack(
         build_stack(table, options.stack, [&](double share) { progress.update(share); }),
         Interpolation::displacement);
@@ -89,6 +91,23 @@ void table_to_mbsdf(const CLI::App& verb, const Options& options) {
   write_table_as_mbsdf(load_table(options.in, options.policies), options.out, thetas, phis);
 }
 
+void model_to_table(const CLI::App& verb, const Options& options, const std::string& extension) {
+  refuse_policies(verb, "a model has no such cells");
+  refuse(verb, {"--phi-d"}, "a model is reciprocal, so that 180 bins hold all of it");
+  const LobeModel model = load_model(options.in);
+  const ProgressLine progress("writing " + options.out);
+  if (extension == ".binary") {
+    write_merl(options.out, synthesize_merl(model));
+    return;
+  }
+  const auto [thetas, phis] = parse_grid("--grid", options.grid.empty() ? "90x180" : options.grid);
+  if (thetas > max_grid_side || phis > max_grid_side) {
+    throw Error("--grid: found " + options.grid + ", expected at most " +
+                std::to_string(max_grid_side) + " thetas and phis");
+  }
+  write_mbsdf(options.out, synthesize_grid(model, thetas, phis));
+}
+
 void convert(const CLI::App& verb, Options& options) {
   const std::string extension = checked_extension(options.out, {".exr", ".binary", ".mbsdf"});
   if (extension != ".binary") refuse(verb, {"--phi-d"}, "only MERL has it");
@@ -107,6 +126,10 @@ void convert(const CLI::App& verb, Options& options) {
   refuse(verb, {"--incident", "--bytes", "--tolerance"}, "only a stack file has diagrams");
   if (extension == ".binary") {
     refuse(verb, {"--grid"}, "the cells of MERL are fixed");
+  }
+  if (is_model_file(options.in)) {
+    model_to_table(verb, options, extension);
+  } else if (extension == ".binary") {
     table_to_merl(verb, options);
   } else {
     table_to_mbsdf(verb, options);
@@ -121,7 +144,7 @@ void add_convert(CLI::App& app) {
   CLI::App* verb = app.add_subcommand(
       "convert", "A table as a stack file (.exr), MERL (.binary) or MBSDF (.mbsdf)");
   verb->add_option("IN", options->in,
-                   "MERL, RGL or MBSDF table, or stack file, known by its content")
+                   "MERL, RGL or MBSDF table, stack file, or fit.json, known by its content")
       ->required();
   verb->add_option("OUT", options->out,
                    "File to write; its extension, .exr, .binary or .mbsdf, is its format")
@@ -141,12 +164,14 @@ void add_convert(CLI::App& app) {
   add_cell_policies(*verb, options->policies);
   verb->footer(
       "MERL to MERL, and MBSDF to MBSDF without --grid, keep the values as they are stored.\n"
-      "Anything else is sampled at the cell centres of OUT.\n\n"
+      "Anything else is sampled at the cell centres of OUT. A fit.json is a table of MERL's cells\n"
+      "for a stack, and the model itself at the cell centres of a table.\n\n"
       "Examples:\n"
       "  gonio convert chrome.binary chrome.exr\n"
       "  gonio convert satin.bsdf small.exr --grid 16x16 --bytes 64KiB\n"
       "  gonio convert satin.bsdf satin.binary\n"
-      "  gonio convert satin.bsdf satin.mbsdf --grid 45x90");
+      "  gonio convert satin.bsdf satin.mbsdf --grid 45x90\n"
+      "  gonio convert fit.json fit.exr");
   verb->callback([options, verb] { convert(*verb, *options); });
 }
 

@@ -1,5 +1,6 @@
 #include <gonio/mapping/error.h>
 #include <gonio/tools/convert.h>
+#include <gonio/tools/fit.h>
 #include <gonio/tools/info.h>
 #include <gonio/tools/light.h>
 #include <gonio/tools/report/report.h>
@@ -50,6 +51,7 @@ int main(int argc, char** argv) {
   gonio::add_convert(app);
   gonio::add_report(app);
   gonio::add_synth(app);
+  gonio::add_fit(app);
   gonio::add_light(app);
   try {
     app.parse(argc, argv);

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -41,6 +42,14 @@ void print_models() {
   std::printf("default is %s\n", describe(parse_model("default")).c_str());
 }
 
+/// A description, or the name of a model file.
+LobeModel model_of(const std::string& text) {
+  std::error_code none;
+  const bool file = std::filesystem::path(text).extension() == ".json" ||
+                    std::filesystem::is_regular_file(text, none);
+  return file ? load_model(text) : parse_model(text);
+}
+
 void synth(Options& options) {
   if (options.list) {
     print_models();
@@ -59,7 +68,7 @@ void synth(Options& options) {
                 ", expected more than 0, up to 90");
   }
   options.synth.measured_to = limit * pi<double> / 180;
-  const LobeModel model = parse_model(options.model);
+  const LobeModel model = model_of(options.model);
   const ProgressLine progress("computing " + options.out);
   if (extension == ".binary") {
     write_merl(options.out, synthesize_merl(model, options.synth));
@@ -73,8 +82,9 @@ void synth(Options& options) {
 void add_synth(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* verb = app.add_subcommand("synth", "A table computed from an analytic model");
-  verb->add_option("MODEL", options->model,
-                   "'default', or lobes joined by + with their parameters; see --list");
+  verb->add_option(
+      "MODEL", options->model,
+      "'default', lobes joined by + with their parameters (see --list), or a fit.json");
   verb->add_option("-o,--output", options->out, "File to write: MERL (.binary) or MBSDF (.mbsdf)")
       ->type_name("OUT");
   verb->add_flag("--list", options->list, "Lists lobes and parameters");
@@ -92,7 +102,8 @@ void add_synth(CLI::App& app) {
       "  gonio synth --list\n"
       "  gonio synth default -o default.binary\n"
       "  gonio synth ggx:alpha=0.1,F0=0.04+lambert:albedo=0.5/0.3/0.1 -o plastic.mbsdf\n"
-      "  gonio synth ggx:alpha=0.2,eta=0.2,k=3.9 --noise 0.05 --measured-to 80 -o metal.binary");
+      "  gonio synth ggx:alpha=0.2,eta=0.2,k=3.9 --noise 0.05 --measured-to 80 -o metal.binary\n"
+      "  gonio synth fit.json -o fitted.binary");
   verb->callback([options] { synth(*options); });
 }
 

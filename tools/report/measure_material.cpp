@@ -10,6 +10,11 @@
 #include <gonio/brdf/baseline.h>
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/brdf/parallel.h>
+#include <gonio/fitting/fit_json.h>
+#include <gonio/fitting/lobe_sampler.h>
+#include <gonio/mapping/error.h>
+#include <gonio/tools/input.h>
+#include <gonio/tools/table_fits.h>
 
 namespace gonio {
 namespace {
@@ -65,9 +70,52 @@ class Bench {
   std::vector<std::shared_ptr<const void>> owners_;
 };
 
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Adds the fits to the report and their samplers, lobes1 to lobes3, to the bench. Returns the
+/// bytes of the largest of them; 0 if there is nothing to fit, the table being black.
+std::size_t add_lobes(const std::shared_ptr<const BrdfTable>& table, MaterialReport& material, Bench& bench) {
+  TableFits fits;
+  try {
+    fits = fit_table(*table, parse_model(default_fit_form));
+  } catch (const Error&) {
+    return 0;
+  }
+  std::size_t bytes = 0;
+  for (const StageFit& stage : fits.stages) {
+    const LobeModel& model = stage.fit.model;
+    const nlohmann::json written = nlohmann::json::parse(to_json(stage.fit, stage.errors));
+    material.fits.push_back({{"model", describe(model)}, {"parameters", written["lobes"]}, {"fit", written["fit"]}, {"errors", written["errors"]}});
+    const nlohmann::json params = {{"model", describe(model)}, {"adaption", "shapes"}, {"fit_seconds", fits.seconds}};
+    const auto start = Clock::now();
+    const auto sampler = std::make_shared<const LobeSampler>(table, model);
+    bench.add<LobeSampler>("lobes" + std::to_string(model.specular_count()), "none", params, seconds_since(start), sampler);
+    bytes = std::max(bytes, sampler->bytes());
+  }
+  return bytes;
+}
+
+/// A stack of about that many bytes: seven angles with as many lines as fit.
+void add_small_stack(const std::shared_ptr<const BrdfTable>& table, std::size_t bytes, Bench& bench) {
+  const auto start = Clock::now();
+  std::shared_ptr<const Sampler> sampler;
+  for (const int side : {16, 12, 8, 6, 5, 4}) {
+    StackOptions options;
+    options.meridians = options.parallels = side;
+    options.bytes = bytes;
+    sampler = std::make_shared<const Sampler>(table, build_stack(*table, options));
+    if (sampler->bytes() <= bytes) break;
+  }
+  bench.add<Sampler>("displacement_small", "outgoing", stack_params(sampler->stack()), seconds_since(start), sampler);
+}
+
 MaterialReport measure_stack_file(const std::filesystem::path& path, const Progress& progress) {
   const StackFile file = load_stack(path);
-  MaterialReport material{file.name, path.string(), "stack", std::filesystem::file_size(path), {}, {}};
+  MaterialReport material{file.name, path.string(), "stack", std::filesystem::file_size(path), {}, nlohmann::json::array(), {}};
   const auto start = std::chrono::steady_clock::now();
   const auto sampler = std::make_shared<const Sampler>(load_sampler(path));
   const std::chrono::duration<double> build = std::chrono::steady_clock::now() - start;
@@ -85,8 +133,8 @@ MaterialReport measure_stack_file(const std::filesystem::path& path, const Progr
 MaterialReport measure_material(const std::filesystem::path& path, const ReportOptions& options,
                                 const Progress& progress) {
   if (is_exr(path)) return measure_stack_file(path, progress);
-  const auto table = std::make_shared<const BrdfTable>(load_table(path, options.policies));
-  MaterialReport material{table->info().name, table->info().source, table->info().format, table->info().source_bytes, {}, {}};
+  const auto table = std::make_shared<const BrdfTable>(load_input(path, options.policies));
+  MaterialReport material{table->info().name, table->info().source, table->info().format, table->info().source_bytes, {}, nlohmann::json::array(), {}};
 
   constexpr double building = 0.3;  // its share of the progress
   const auto start = std::chrono::steady_clock::now();
@@ -103,6 +151,8 @@ MaterialReport measure_material(const std::filesystem::path& path, const ReportO
     const auto sampler = std::make_shared<const Sampler>(table, grid, interpolation);
     bench.add<Sampler>(to_string(interpolation), "outgoing", stack_params(sampler->stack()), build.count(), sampler);
   }
+  if (const std::size_t bytes = add_lobes(table, material, bench); bytes > 0)
+    add_small_stack(table, bytes, bench);
   material.methods = bench.run([&](double done) { progress(building + (1 - building) * done); });
   material.stack.emplace(grid, Interpolation::displacement);
   return material;

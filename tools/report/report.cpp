@@ -34,7 +34,7 @@ void add_report(CLI::App& app) {
   };
   auto options = std::make_shared<Options>();
   CLI::App* verb = app.add_subcommand("report", "Measure how well materials are sampled, by every method");
-  verb->add_option("IN", options->inputs, "Tables (MERL, RGL, MBSDF), stack files, or luminaires (IES, EULUMDAT, light EXR)")->required();
+  verb->add_option("IN", options->inputs, "Tables (MERL, RGL, MBSDF), stack files, fit.json, or luminaires (IES, EULUMDAT, light EXR)")->required();
   verb->add_option("-o,--output", options->directory, "Folder for report.json and report.md")->required();
   verb->add_option_function<std::string>(
           "--grid",
@@ -48,7 +48,8 @@ void add_report(CLI::App& app) {
   add_cell_policies(*verb, options->report.policies);
   verb->footer(
       "Angles 2, 10, 30, 50, 70, 80 and 85 degrees. Methods: uniform, cosine, nearest, mixture, displacement,\n"
-      "and for RGL files rgl, the format's own warps. Luminaires: relative variance and speed of emission.\n\n"
+      "for RGL files rgl, the format's own warps; lobes1, lobes2 and lobes3, fitted GGX lobes; and\n"
+      "displacement_small, a stack of about the lobes' bytes. Luminaires: relative variance and speed of emission.\n\n"
       "Examples:\n"
       "  gonio report chrome.binary -o report\n"
       "  gonio report measured/*.bsdf --bytes 128KiB -o report");

@@ -19,7 +19,7 @@ struct CallTimes {
 
 /// One way of sampling one material, measured.
 struct MethodReport {
-  std::string id;          ///< uniform, cosine, nearest, mixture, displacement, rgl
+  std::string id;          ///< uniform, cosine, nearest, mixture, displacement, displacement_small, rgl, lobes1 ... 3
   std::string chart;       ///< what the method's density is tabulated over; "none" if nothing is tabulated
   nlohmann::json params;   ///< what made it
   std::size_t bytes = 0;   ///< all memory that the sampler holds, the source table apart
@@ -32,6 +32,7 @@ struct MaterialReport {
   std::string name, source, format;
   std::uint64_t source_bytes = 0;
   std::vector<MethodReport> methods;
+  nlohmann::json fits = nlohmann::json::array();  ///< of one, two and three lobes; empty for a stack file
   std::optional<Stack<float>> stack;  ///< of `displacement`, for the figure; not part of the JSON
 };
 

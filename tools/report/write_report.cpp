@@ -1,5 +1,6 @@
 #include <gonio/tools/report/write_report.h>
 
+#include <gonio/tools/report/compare_lobes.h>
 #include <gonio/tools/report/grid_figure.h>
 
 #include <algorithm>
@@ -59,6 +60,7 @@ void write_markdown(std::ostream& out, const Report& report) {
       for (const auto& q : m.angles) out << ' ' << number(q.relvar, 2) << " |";
       out << '\n';
     }
+    write_lobes(out, material);
     out << "\n| method | θi | max weight | invalid | pdf integral | albedo sampled | albedo table | χ² p |\n|---|---|---|---|---|---|---|---|\n";
     for (const MethodReport& m : material.methods) {
       for (const auto& q : m.angles) {
@@ -106,7 +108,10 @@ nlohmann::json to_json(const Report& report) {
                          {"source", material.source},
                          {"format", material.format},
                          {"source_bytes", material.source_bytes},
-                         {"methods", std::move(methods)}});
+                         {"methods", std::move(methods)},
+                         {"fits", material.fits}});
+    if (const auto comparison = compare_lobes(material))
+      materials.back()["lobes_against_stack"] = to_json(*comparison);
   }
   nlohmann::json lights = nlohmann::json::array();
   for (const LightReport& light : report.lights) {

@@ -1,0 +1,211 @@
+// Runs `gonio fit`, and the verbs that read what it writes, as a user does.
+
+#include <gonio/brdf/bytes.h>
+#include <gonio/brdf/table.h>
+#include <gonio/fitting/synth.h>
+#include <gonio/mapping/error.h>
+#include <gonio/tests/table_files.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+namespace gonio {
+namespace {
+
+constexpr const char* one_lobe = "ggx:alpha=0.4,F0=0.2/0.15/0.1+lambert:albedo=0.3/0.2/0.1";
+constexpr const char* two_lobes = "ggx:alpha=0.7,F0=0.3+ggx:alpha=0.2,F0=0.1+lambert:albedo=0.1";
+
+struct Outcome {
+  int code;  // exit status, or -1 if the program crashed
+  std::string out, err;
+};
+
+class FitToolTest : public testing::Test {
+ protected:
+  std::filesystem::path path(const std::string& name) const { return folder_.path() / name; }
+
+  /// A table of 24 x 24 x 36 cells.
+  void write_table(const std::string& name, const char* model) const {
+    write_mbsdf(path(name), synthesize_grid(parse_model(model), 24, 36));
+  }
+
+  Outcome execute(const std::string& arguments) const {
+    const std::string command =
+        "cd '" + folder_.path().string() + "' && '" GONIO_TOOL "' " + arguments + " >.out 2>.err";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_bytes(path(".out")),
+            read_bytes(path(".err"))};
+  }
+
+  std::string expect_ok(const std::string& arguments) const {
+    const Outcome run = execute(arguments);
+    EXPECT_EQ(run.code, 0) << arguments << "\n" << run.err;
+    return run.out;
+  }
+
+  void expect_error(const std::string& arguments, const std::string& part) const {
+    const Outcome run = execute(arguments);
+    EXPECT_EQ(run.code, 1) << arguments;
+    EXPECT_NE(run.err.find(part), std::string::npos) << part << "\nin " << run.err;
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST_F(FitToolTest, WritesTheModelThatMadeTheTable) {
+  write_table("a.mbsdf", one_lobe);
+  const std::string out = expect_ok("fit a.mbsdf --model ggx+lambert -o fit.json");
+  for (const char* part : {"converged after", "1.ggx.alpha", "relative L1", "to 75 deg", "beyond",
+                           "written: fit.json"}) {
+    EXPECT_TRUE(contains(out, part)) << part << "\n" << out;
+  }
+  const LobeModel model = load_model(path("fit.json"));
+  EXPECT_EQ(model.name, "a");
+  ASSERT_EQ(model.lobes.size(), 2u);
+  for (const Lobe& lobe : model.lobes) {
+    // Reading between cells of 4 degrees costs some percent.
+    if (lobe.specular()) {
+      EXPECT_NEAR(lobe.shape[0].r, 0.4, 0.02);
+      EXPECT_NEAR(lobe.color[0].g, 0.15, 0.015);
+    } else {
+      EXPECT_NEAR(lobe.color[0].b, 0.1, 0.01);
+    }
+  }
+  const auto json = nlohmann::json::parse(read_bytes(path("fit.json")));
+  EXPECT_LT(json["errors"]["inside_cutoff"]["relative_l1"].get<double>(), 0.03);
+  EXPECT_TRUE(json["snippets"].contains("pbrt-v4"));
+  EXPECT_TRUE(json["snippets"].contains("mitsuba3"));
+}
+
+TEST_F(FitToolTest, AutoTakesAsManyLobesAsHelp) {
+  write_table("one.mbsdf", one_lobe);
+  write_table("two.mbsdf", two_lobes);
+  EXPECT_TRUE(
+      contains(expect_ok("fit two.mbsdf -o two.json"), "the fewest within 10 % of the best"));
+  EXPECT_GE(load_model(path("two.json")).specular_count(), 2);
+  expect_ok("fit two.mbsdf --model ggx+lambert -o one.json");
+  EXPECT_EQ(load_model(path("one.json")).specular_count(), 1);
+}
+
+TEST_F(FitToolTest, OptionsReachTheFit) {
+  write_table("a.mbsdf", "ggx:alpha=0.2/0.4/0.6,F0=0.2+lambert:albedo=0.2");
+  expect_ok("fit a.mbsdf --model ggx+lambert -o shared.json");
+  expect_ok("fit a.mbsdf --model ggx+lambert --channels separate -o separate.json");
+  const auto alphas = [&](const char* name) {
+    for (const Lobe& lobe : load_model(path(name)).lobes)
+      if (lobe.specular()) return lobe.shape[0];
+    return glm::dvec3(0);
+  };
+  EXPECT_EQ(alphas("shared.json").r, alphas("shared.json").b);
+  EXPECT_NEAR(alphas("separate.json").r, 0.2, 0.02);
+  EXPECT_NEAR(alphas("separate.json").b, 0.6, 0.05);
+  EXPECT_TRUE(contains(expect_ok("fit a.mbsdf --model ggx+lambert --cutoff 60"), "to 60 deg"));
+  const std::string help = expect_ok("fit --help");
+  EXPECT_TRUE(contains(help, "--cutoff DEGREES [75]") || contains(help, "--cutoff DEGREES=75"))
+      << help;
+}
+
+TEST_F(FitToolTest, WritesATableOfErrors) {
+  write_table("one.mbsdf", one_lobe);
+  write_table("two.mbsdf", two_lobes);
+  expect_ok("fit one.mbsdf two.mbsdf --table errors.md");
+  std::istringstream lines(read_bytes(path("errors.md")));
+  int rows = 0;
+  double before = 0;
+  std::string line, name;
+  while (std::getline(lines, line)) {
+    if (line.rfind("| one |", 0) != 0 && line.rfind("| two |", 0) != 0) continue;
+    std::vector<std::string> cells;
+    std::istringstream row(line.substr(2));
+    for (std::string cell; std::getline(row, cell, '|');) cells.push_back(cell);
+    ASSERT_EQ(cells.size(), 15u) << line;
+    const double cost = std::stod(cells[12]);
+    if (cells[0] == name) {
+      EXPECT_LE(cost, before) << line;  // more lobes never fit worse
+    }
+    name = cells[0];
+    before = cost;
+    ++rows;
+  }
+  EXPECT_EQ(rows, 6);
+}
+
+TEST_F(FitToolTest, RefusesWhatItCannotDo) {
+  write_table("a.mbsdf", one_lobe);
+  expect_ok("convert a.mbsdf a.exr --incident 3");
+  expect_error("fit a.mbsdf --model nosuch -o x.json", "unknown lobe 'nosuch'");
+  expect_error("fit a.mbsdf --cutoff 0 -o x.json", "--cutoff: found 0");
+  expect_error("fit a.mbsdf --channels many -o x.json",
+               "--channels: found 'many', expected shared");
+  expect_error("fit a.mbsdf --starts -1 -o x.json", "starts");
+  expect_error("fit a.mbsdf a.mbsdf -o x.json", "IN: found 2, expected one, or --table");
+  expect_error("fit a.mbsdf -o x.json --table x.md", "-o: found one, expected none");
+  expect_error("fit a.mbsdf -o x.txt", "extension: found .txt, expected one of .json");
+  expect_error("fit a.exr -o x.json", "found a stack file");
+  expect_error("fit missing.mbsdf -o x.json", "missing.mbsdf");
+  write_table("black.mbsdf", "lambert:albedo=0");
+  expect_error("fit black.mbsdf -o x.json", "black.mbsdf: ");
+  EXPECT_FALSE(std::filesystem::exists(path("x.json")));
+  EXPECT_FALSE(std::filesystem::exists(path("x.md")));
+}
+
+TEST_F(FitToolTest, ModelFilesAreInputs) {
+  const LobeModel model = parse_model(one_lobe);
+  std::ofstream(path("fit.json")) << to_json(model);
+  expect_ok("synth fit.json -o s.binary");
+  expect_ok("convert fit.json c.binary");
+  EXPECT_TRUE(read_bytes(path("s.binary")) == read_bytes(path("c.binary")));
+  expect_ok("convert fit.json c.mbsdf --grid 12x8");
+  EXPECT_EQ(read_mbsdf(path("c.mbsdf")).values, synthesize_grid(model, 12, 8).values);
+  expect_ok("convert fit.json c.exr --incident 3");
+  EXPECT_TRUE(std::filesystem::exists(path("c.exr")));
+  const glm::vec3 wi(0.6f, 0, 0.8f), wo(-0.48f, 0.36f, 0.8f);
+  const glm::vec3 exact = model.eval(wi, wo), read = load_table(path("c.binary")).eval(wi, wo);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(read[c], exact[c], 0.01f * exact[c]);
+  expect_error("convert fit.json d.binary --phi-d 360", "--phi-d");
+  expect_error("convert fit.json d.binary --negative zero", "--negative");
+  std::ofstream(path("broken.json")) << "{\"format\": \"gonio mod";
+  expect_error("convert broken.json d.exr", "broken.json: is not JSON");
+  expect_error("synth broken.json -o d.binary", "broken.json: is not JSON");
+  expect_error("synth missing.json -o d.binary", "missing.json");
+}
+
+TEST_F(FitToolTest, ReportComparesLobesAndStacks) {
+  std::ofstream(path("fit.json")) << to_json(parse_model(one_lobe));
+  expect_ok("report fit.json -o report --grid 16x16 --incident 12");
+  const auto report = nlohmann::json::parse(read_bytes(path("report/report.json")));
+  const auto& material = report["materials"][0];
+  EXPECT_EQ(material["format"], "model");
+  ASSERT_EQ(material["fits"].size(), 3u);
+  for (const auto& fit : material["fits"]) {
+    EXPECT_FALSE(fit["model"].get<std::string>().empty());
+    EXPECT_LT(fit["errors"]["inside_cutoff"]["relative_l1"].get<double>(), 0.01);
+  }
+  int lobes = 0;
+  for (const auto& method : material["methods"]) {
+    if (method["id"].get<std::string>().rfind("lobes", 0) != 0) continue;
+    ++lobes;
+    EXPECT_EQ(method["params"]["adaption"], "shapes");
+    for (const auto& angle : method["angles"]) {
+      if (angle["theta_i_deg"].get<double>() <= 70) {
+        EXPECT_LT(angle["relvar"].get<double>(), 0.05);
+      }
+      EXPECT_GT(angle["chi2_p"].get<double>(), 1e-6);
+    }
+  }
+  EXPECT_EQ(lobes, 3);
+  EXPECT_GT(material["lobes_against_stack"]["equal_time_ratio"].get<double>(), 0);
+  EXPECT_TRUE(contains(read_bytes(path("report/report.md")), "As a sampler, for this material a "));
+}
+
+}  // namespace
+}  // namespace gonio

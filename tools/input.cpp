@@ -1,0 +1,22 @@
+#include <gonio/brdf/bytes.h>
+#include <gonio/fitting/synth.h>
+#include <gonio/tools/input.h>
+
+namespace gonio {
+
+bool is_model_file(const std::filesystem::path& path) {
+  const std::string head = read_bytes(path, 64);
+  const std::size_t first = head.find_first_not_of(" \t\r\n");
+  return first != std::string::npos && head[first] == '{';
+}
+
+BrdfTable load_input(const std::filesystem::path& path, const CellPolicies& policies) {
+  if (!is_model_file(path)) return load_table(path, policies);
+  const LobeModel model = load_model(path);
+  MerlTable table(synthesize_merl(model), policies);
+  const CellCounts cells = table.cells();
+  return BrdfTable(std::move(table), {path.stem().string(), path.string(), "model", describe(model),
+                                      regular_file_size(path), cells});
+}
+
+}  // namespace gonio
