@@ -7,7 +7,7 @@
 
 namespace gonio {
 
-/// The report with stable keys; see docs/report.md.
+/// The report with stable keys; see docs/tool.md.
 nlohmann::json to_json(const Report& report);
 
 /// Writes report.json, report.md and a figure per material into `directory`, which is made if need be; each file is
