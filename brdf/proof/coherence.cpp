@@ -57,9 +57,9 @@ Coherence measure_coherence(const Subject& subject, double theta_i, int side) {
   const Map map = [&](const Point& p) { return subject.sample(wi, glm::vec2(p)); };
   const std::size_t n = static_cast<std::size_t>(side) + 1;
   const double h = 1.0 / side;
-  // Corners on the border would fall on u = 1; all are moved by a quarter of a cell.
+  // Moved by part of a cell: off u = 1, and off the diagonals, where the concentric map has its kinks.
   const auto at = [&](std::size_t i, std::size_t j) {
-    return Point(std::min((static_cast<double>(i) + 0.25) * h, 1 - 0x1p-24), std::min((static_cast<double>(j) + 0.25) * h, 1 - 0x1p-24));
+    return Point(std::min((static_cast<double>(i) + 0.25) * h, 1 - 0x1p-24), std::min((static_cast<double>(j) + 0.4) * h, 1 - 0x1p-24));
   };
   std::vector<std::optional<BsdfSample>> corner(n * n);
   for (std::size_t i = 0; i < n; ++i)
@@ -79,10 +79,18 @@ Coherence measure_coherence(const Subject& subject, double theta_i, int side) {
       const bool apart = torn(map, at(i, j), at(i + 1, j), a->wo, b->wo), aside = torn(map, at(i, j), at(i, j + 1), a->wo, c->wo);
       result.tears += apart + aside;
       if (apart || aside) continue;
-      // Orientation by the diagonals, which also judges cells that are bent.
-      const glm::dvec3 e = glm::dvec3(d->wo) - glm::dvec3(a->wo), f = glm::dvec3(c->wo) - glm::dvec3(b->wo);
-      const double area = dot(cross(e, f), glm::dvec3(a->wo)) / 2;
-      if (std::abs(area) > 0.05 * size.x * size.y / pdf) ++(area > 0 ? positive : negative);
+      // Orientation by small corners of the cell: a larger one may be bent, a small one cross a kink. What
+      // is turned inside out is so at every size.
+      const auto orientation = [&](double share) {
+        const auto right = map(at(i, j) + Point(share * size.x, 0)), up = map(at(i, j) + Point(0, share * size.y));
+        if (!(right && up)) return 0;
+        const glm::dvec3 origin(a->wo);
+        const double area = dot(cross(glm::dvec3(right->wo) - origin, glm::dvec3(up->wo) - origin), origin);
+        if (std::abs(area) <= 0.05 * share * share * size.x * size.y / a->pdf) return 0;
+        return area > 0 ? 1 : -1;
+      };
+      const int sign = orientation(1.0 / 64);
+      if (sign != 0 && sign == orientation(1.0 / 512) && sign == orientation(1.0 / 2048)) ++(sign > 0 ? positive : negative);
     }
   }
   result.folds = std::min(positive, negative);

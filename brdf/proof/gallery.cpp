@@ -117,14 +117,14 @@ std::vector<GalleryStack> gallery_stacks() {
       stack(zero_where([](const Crossing& c) {
               return c.diagram % 2 == 1 && c.meridian >= 5 && c.meridian <= 7 && c.parallel >= 8 && c.parallel <= 10;
             }), phi, r), true);
-  add("zero-meridian", "a marginal of 0: the conditional is 0/0 there",
-      stack(zero_where([](const Crossing& c) { return c.meridian == 6 && c.parallel > 0; }), phi, r));
+  add("zero-meridian", "a marginal of 0 (and so is the pole): the conditional is 0/0 there, and jumps from one side to the other",
+      stack(zero_where([](const Crossing& c) { return c.meridian == 6 || c.parallel == 0; }), phi, r), true);
   add("zero-parallel", "a ring without density, of measure 0",
       stack(zero_where([](const Crossing& c) { return c.parallel == 8; }), phi, r));
   add("zero-sector", "two neighbouring meridians without density: the marginal has a gap",
       stack(zero_where([](const Crossing& c) { return c.parallel == 0 || (c.meridian >= 5 && c.meridian <= 7); }), phi, r), true);
   add("spike", "one crossing 10^4 above the rest: nearly all (u, v) in four cells",
-      stack([](const Crossing& c) { return c.meridian == 4 + c.diagram && c.parallel == 9 ? 1e4 : 1.0; }, phi, r));
+      stack([](const Crossing& c) { return c.meridian == 4 + c.diagram && c.parallel == 9 ? 1e4 : 1.0; }, phi, r), true);
   Random random(12);
   const auto decades = [&](const Crossing&) { return std::pow(10.0, -12.0 * random()); };
   add("decades", "twelve decades at random: sums that swallow, differences that cancel", stack(decades, phi, r), true);
@@ -153,13 +153,15 @@ std::vector<GalleryStack> gallery_stacks() {
 
 std::vector<GalleryTable> gallery_tables() {
   std::vector<GalleryTable> g;
-  const auto add = [&](const char* name, const char* reason, GridFile file) { g.push_back({name, reason, std::move(file)}); };
+  const auto add = [&](const char* name, const char* reason, GridFile file, bool zero_regions = false) {
+    g.push_back({name, reason, std::move(file), zero_regions});
+  };
   add("lambert", "albedo exactly 0.5: every factor of pi, cosine and 2 shows", table([](double, double, double) { return 0.5 / pi<double>; }));
   add("zero-table", "reflects nothing: no density to scale, weights are 0", table([](double, double, double) { return 0.0; }));
   add("zero-diagram", "reflects nothing at some incident angles, something at their neighbours",
-      table([](double i, double, double) { return i > 0.6 && i < 0.9 ? 0.0 : 0.3; }));
+      table([](double i, double, double) { return i > 0.6 && i < 0.9 ? 0.0 : 0.3; }), true);
   add("zero-half", "reflects nothing on one side: f_r is 0 over half of the hemisphere",
-      table([](double, double, double phi) { return phi < pi<double> / 2 ? 0.0 : 0.3; }));
+      table([](double, double, double phi) { return phi < pi<double> / 2 ? 0.0 : 0.3; }), true);
   add("spike", "one cell 10^3 above the rest at every incident angle",
       table([n = 0](double, double, double) mutable { const int k = n++ % (24 * 24); return k == 9 * 24 + 15 ? 200.0 : 0.2; }));
   add("retro", "reflects back to the source", table([](double i, double o, double phi) { return 3 * table_lobe(o, phi, i, 0, 0.2) + 0.02; }));

@@ -31,6 +31,7 @@ struct GalleryTable {
   std::string name;
   std::string reason;
   GridFile file;
+  bool zero_regions = false;  ///< as in GalleryStack
 };
 
 std::vector<GalleryTable> gallery_tables();

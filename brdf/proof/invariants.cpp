@@ -51,7 +51,7 @@ struct Worst {
 };
 
 /// Whether a function of t in [0, 1] jumps: halves the interval, each time keeping the half over which
-/// the function differs more. What is continuous comes down, cube roots to 1/16; a jump stays.
+/// the function differs more. What is continuous comes down, cube roots to 1/40; a jump stays.
 /// `difference` is that of two values, `size` that of the larger.
 template <class Value>
 bool has_jump(const std::function<Value(double)>& function, const std::function<double(const Value&, const Value&)>& difference,
@@ -60,7 +60,7 @@ bool has_jump(const std::function<Value(double)>& function, const std::function<
   Value fa = function(a), fb = function(b);
   const double whole = difference(fa, fb);
   if (!(whole > 0)) return false;
-  for (int halving = 0; halving < 12; ++halving) {
+  for (int halving = 0; halving < 16; ++halving) {
     const double middle = (a + b) / 2;
     const Value f = function(middle);
     if (difference(fa, f) > difference(f, fb))
@@ -134,6 +134,11 @@ class Run {
     }
   }
 
+  /// How far two pdfs are apart, relative; less where both are within pdf_floor of 0.
+  double pdf_difference(double a, double b) const {
+    return std::abs(a - b) / (std::max(a, b) + o_.pdf_floor / o_.pdf_bound * peak_);
+  }
+
   bool has_digits(double pdf) const { return pdf >= o_.density_floor * peak_; }
 
   double pdf(const glm::vec3& wo) const { return s_.pdf(wi_, wo); }
@@ -204,7 +209,7 @@ class Run {
     Worst pdf_error, weight_error;
     for (const Point& p : points_) {
       if (!has_digits(p.s.pdf)) continue;
-      pdf_error.see(relative(p.s.pdf, pdf(p.s.wo)), p.s.wo);
+      pdf_error.see(pdf_difference(p.s.pdf, pdf(p.s.wo)), p.s.wo);
       if (!s_.f_r) continue;
       const glm::vec3 expected = s_.f_r(wi_, p.s.wo) * (p.s.wo.z / p.s.pdf);
       for (int c = 0; c < 3; ++c) weight_error.see(relative(p.s.weight[c], expected[c]), p.s.wo);
@@ -235,7 +240,10 @@ class Run {
     const auto back_and_forth = [&](const glm::vec3& w) {
       const auto u = s_.invert(wi_, w);
       const auto s = u ? s_.sample(wi_, *u) : std::nullopt;
-      direction.see(s ? largest_component(s->wo, w) : infinity, w);
+      if (!u)
+        direction.see(infinity, w);
+      else if (s)  // else rounding met a line without density
+        direction.see(largest_component(s->wo, w), w);
     };
     for (const Point& p : points_) {
       if (!has_digits(p.s.pdf)) continue;
@@ -258,12 +266,12 @@ class Run {
     for (const Point& p : points_) {
       if (!has_digits(p.s.pdf)) continue;
       const double here = pdf(p.s.wo);
-      if (o_.symmetric) mirror.see(relative(here, pdf({p.s.wo.x, -p.s.wo.y, p.s.wo.z})) / o_.pdf_bound, p.s.wo);
+      if (o_.symmetric) mirror.see(pdf_difference(here, pdf({p.s.wo.x, -p.s.wo.y, p.s.wo.z})) / o_.pdf_bound, p.s.wo);
       if (!has_azimuth) continue;
       for (const float angle : {0.7f, 2.4f, -1.3f}) {
         const glm::vec3 wi = turned(wi_, angle), wo = turned(p.s.wo, angle);
-        rotation.see(relative(here, s_.pdf(wi, wo)) / o_.pdf_bound, p.s.wo);
-        if (!o_.continuous) continue;  // rounding of theta_i may choose another diagram
+        rotation.see(pdf_difference(here, s_.pdf(wi, wo)) / o_.pdf_bound, p.s.wo);
+        if (!o_.turns || !o_.continuous) continue;  // rounding of theta_i may choose another diagram
         const auto s = s_.sample(wi, p.u);
         if (s) rotation.see(largest_component(s->wo, wo) / o_.direction_bound, p.s.wo);
       }
@@ -304,7 +312,7 @@ class Run {
           [](const glm::vec3& a, const glm::vec3& b) { return static_cast<double>(largest_component(a, b)); },
           [](const glm::vec3&, const glm::vec3&) { return 0.01; });
     }
-    at_most("jumps", static_cast<double>(jumps) / static_cast<double>(std::max<std::size_t>(tried, 1)), 0.005, where);
+    at_most("jumps", static_cast<double>(jumps) / static_cast<double>(std::max<std::size_t>(tried, 1)), 0.02, where);
     at_most("jumps_of_map", static_cast<double>(jumps_of_map) / static_cast<double>(std::max<std::size_t>(places, 1)), 0);
     const Coherence coherence = measure_coherence(s_, theta_i_);
     at_most("tears", static_cast<double>(coherence.tears + coherence.folds), 0, std::to_string(coherence.folds) + " of them folds");
