@@ -35,6 +35,12 @@ struct DiagramGrid {
 /// is r_B^2. The density of the image is the stored density over its integral: pdf() is exact.
 /// No map iterates; each does one binary search over the lines and a fixed number of operations.
 ///
+/// Errors, against exact arithmetic on the same lines and densities, epsilon being that of T (tested
+/// for 40 x 40 irregular lines in float):
+/// - u_of() 4 epsilon, v_of() 8 epsilon, absolute; pdf() 4 epsilon times the largest density;
+/// - forward maps: u differs from the mass that lies below the answer by 16 epsilon, v by as much over
+///   the meridian's share of the mass where that is below 1; densities over twelve decades: 64 epsilon.
+///
 /// Memory: 2 M N + 2 M + N values of T (the paper's 2 M N + 3 M + 2 without the array that its
 /// radius compensation, eq. 27, needs).
 ///

@@ -11,15 +11,20 @@
 #include <ImfMultiPartOutputFile.h>
 #include <ImfOutputPart.h>
 #include <ImfPartType.h>
+#include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
 #include <ImfTestFile.h>
 #include <ImfVersion.h>
 #include <ImathBox.h>
 
+#include <algorithm>
+#include <cstring>
 #include <fstream>
+#include <map>
 #include <vector>
 
 #include <gonio/brdf/atomic_file.h>
+#include <gonio/brdf/bytes.h>
 #include <gonio/mapping/error.h>
 
 namespace gonio {
@@ -96,7 +101,49 @@ int checked_size(const std::string& file, const std::string& field, std::size_t 
   return static_cast<int>(size);
 }
 
+/// Bytes that OpenEXR reads for a type whatever the size that the file gives; 0 for other types.
+std::size_t fixed_size(const std::string& type) {
+  static const std::map<std::string, std::size_t> sizes{
+      {"box2f", 16},        {"box2i", 16},   {"chromaticities", 32}, {"compression", 1}, {"deepImageState", 1},
+      {"double", 8},        {"envmap", 1},   {"float", 4},           {"int", 4},         {"keycode", 28},
+      {"lineOrder", 1},     {"m33f", 36},    {"m33d", 72},           {"m44f", 64},       {"m44d", 128},
+      {"rational", 8},      {"tiledesc", 9}, {"timecode", 8},        {"v2f", 8},         {"v2i", 8},
+      {"v2d", 16},          {"v3f", 12},     {"v3i", 12},            {"v3d", 24}};
+  const auto found = sizes.find(type);
+  return found == sizes.end() ? 0 : found->second;
+}
+
+/// Refuses attributes that claim more bytes than the file has, or another size than their type: OpenEXR
+/// allocates and clears what they claim, up to 2 GB each, before it finds out. Everything else is
+/// left for OpenEXR to judge.
+void check_attribute_sizes(const std::string& file) {
+  const std::string bytes = read_bytes(file);
+  const auto end_of_text = [&](std::size_t at) { return bytes.find('\0', at); };
+  std::size_t at = 8;  // magic number, version
+  while (at < bytes.size()) {
+    if (bytes[at] == '\0') {  // the end of a header; of a multi-part file, another may follow
+      if (++at >= bytes.size() || bytes[at] == '\0') return;
+      continue;
+    }
+    const std::size_t name = end_of_text(at);
+    const std::size_t type = name == std::string::npos ? name : end_of_text(name + 1);
+    std::int32_t size = 0;
+    if (type == std::string::npos || bytes.size() - type < 1 + sizeof(size)) return;
+    std::memcpy(&size, bytes.data() + type + 1, sizeof(size));
+    const std::size_t first = type + 1 + sizeof(size);
+    if (size < 0 || static_cast<std::size_t>(size) > bytes.size() - first)
+      fail(file, "attribute " + bytes.substr(at, std::min<std::size_t>(name - at, 64)), std::to_string(size) + " bytes",
+           "at most the " + std::to_string(bytes.size() - first) + " that follow");
+    const std::size_t fixed = fixed_size(bytes.substr(name + 1, type - name - 1));
+    if (fixed != 0 && static_cast<std::size_t>(size) != fixed)
+      fail(file, "attribute " + bytes.substr(at, std::min<std::size_t>(name - at, 64)), std::to_string(size) + " bytes",
+           std::to_string(fixed) + " for its type");
+    at = first + static_cast<std::size_t>(size);
+  }
+}
+
 StackFile load(const std::string& file) {
+  check_attribute_sizes(file);
   Imf::MultiPartInputFile input(file.c_str(), 1);
   StackFile result;
   const Imf::Header& first = input.header(0);
@@ -175,27 +222,28 @@ void save_stack(const std::filesystem::path& path, const StackFile& file) {
   first.insert("gonio:units", Imf::StringAttribute("pdf per solid angle in 1/sr; angles in radians; r = sqrt(1 - cos theta)"));
   first.insert("gonio:layout", Imf::StringAttribute("one part per incident angle: columns r, rows phi in 0..pi, mirrored"));
 
-  write_atomically(path, [&](const std::filesystem::path& temporary) {
-    try {
-      // All parts of a file share one display window: it covers them all.
-      Imath::Box2i display;
-      for (const Part& part : parts) display.extendBy(part.header.dataWindow());
-      std::vector<Imf::Header> headers;
-      for (Part& part : parts) {
-        part.header.displayWindow() = display;
-        headers.push_back(part.header);
-      }
-      Imf::MultiPartOutputFile output(temporary.c_str(), headers.data(), static_cast<int>(headers.size()), false, 1);
-      for (std::size_t k = 0; k < parts.size(); ++k) {
-        const auto& window = parts[k].header.dataWindow();
-        Imf::OutputPart out(output, static_cast<int>(k));
-        out.setFrameBuffer(frame_buffer(parts[k].channels, window.max.x + 1, parts[k].pixels.data()));
-        out.writePixels(window.max.y + 1);
-      }
-    } catch (const std::exception& e) {
-      throw Error(path.string() + ": cannot be written: " + e.what());
+  // To memory first: OpenEXR finishes its files in destructors, where a full disk goes unnoticed.
+  Imf::StdOSStream bytes;
+  try {
+    // All parts of a file share one display window: it covers them all.
+    Imath::Box2i display;
+    for (const Part& part : parts) display.extendBy(part.header.dataWindow());
+    std::vector<Imf::Header> headers;
+    for (Part& part : parts) {
+      part.header.displayWindow() = display;
+      headers.push_back(part.header);
     }
-  });
+    Imf::MultiPartOutputFile output(bytes, headers.data(), static_cast<int>(headers.size()), false, 1);
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+      const auto& window = parts[k].header.dataWindow();
+      Imf::OutputPart out(output, static_cast<int>(k));
+      out.setFrameBuffer(frame_buffer(parts[k].channels, window.max.x + 1, parts[k].pixels.data()));
+      out.writePixels(window.max.y + 1);
+    }
+  } catch (const std::exception& e) {
+    throw Error(path.string() + ": cannot be written: " + e.what());
+  }
+  write_stream_atomically(path, [&](std::ostream& stream) { stream << bytes.str(); });
 }
 
 StackFile load_stack(const std::filesystem::path& path) {

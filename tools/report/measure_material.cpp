@@ -55,11 +55,19 @@ class Bench {
     std::mutex mutex;
     std::size_t done = 0;
     for (MethodReport& m : methods_) m.angles.resize(angles);
-    parallel_for(methods_.size() * angles, [&](std::size_t k) {
-      const double theta_i = report_angles[k % angles] * pi<double> / 180;
-      methods_[k / angles].angles[k % angles] = proof::measure(subjects_[k / angles], theta_i);
+    // For each method its angles, and coherence as one more.
+    const std::size_t jobs = methods_.size() * (angles + 1);
+    parallel_for(jobs, [&](std::size_t job) {
+      const std::size_t m = job / (angles + 1), k = job % (angles + 1);
+      const double theta_i = (k < angles ? report_angles[k] : coherence_angle) * pi<double> / 180;
+      if (k < angles) {
+        methods_[m].angles[k] = proof::measure(subjects_[m], theta_i);
+      } else {
+        methods_[m].coherence = proof::measure_coherence(subjects_[m], theta_i);
+        methods_[m].convergence = proof::measure_convergence(subjects_[m], theta_i);
+      }
       const std::lock_guard<std::mutex> lock(mutex);
-      progress(static_cast<double>(++done) / static_cast<double>(methods_.size() * angles));
+      progress(static_cast<double>(++done) / static_cast<double>(jobs));
     });
     return std::move(methods_);
   }

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <gonio/brdf/proof/coherence.h>
 #include <gonio/brdf/proof/measure.h>
 #include <gonio/mapping/light/emission.h>
 
@@ -26,6 +27,8 @@ struct MethodReport {
   double build_seconds = 0;
   CallTimes ns{};
   std::vector<proof::Quality> angles;
+  proof::Coherence coherence;      ///< at coherence_angle
+  proof::Convergence convergence;  ///< at coherence_angle
 };
 
 struct MaterialReport {
@@ -56,6 +59,9 @@ struct Report {
 
 /// The incident angles of every report, in degrees.
 inline constexpr double report_angles[] = {2, 10, 30, 50, 70, 80, 85};
+
+/// The incident angle at which coherence and convergence are measured, in degrees.
+inline constexpr double coherence_angle = 40;
 
 /// The significance of one chi-square test such that a whole report of correct samplers passes with
 /// probability 0.99.

@@ -60,6 +60,13 @@ void write_markdown(std::ostream& out, const Report& report) {
       for (const auto& q : m.angles) out << ' ' << number(q.relvar, 2) << " |";
       out << '\n';
     }
+    out << "\nAt " << coherence_angle << "°: stretch of small cells of the square, tears and folds, and the exponents with which the error falls "
+           "with the number of Sobol' and of random points.\n\n"
+           "| method | stretch, median | stretch, 99 % | tears | Sobol' slope | random slope |\n|---|---|---|---|---|---|\n";
+    for (const MethodReport& m : material.methods)
+      out << "| " << m.id << " | " << number(m.coherence.stretch_p50) << " | " << number(m.coherence.stretch_p99) << " | "
+          << m.coherence.tears + m.coherence.folds << " | " << number(m.convergence.qmc_slope, 2) << " | "
+          << number(m.convergence.mc_slope, 2) << " |\n";
     write_lobes(out, material);
     out << "\n| method | θi | max weight | invalid | pdf integral | albedo sampled | albedo table | χ² p |\n|---|---|---|---|---|---|---|---|\n";
     for (const MethodReport& m : material.methods) {
@@ -102,7 +109,13 @@ nlohmann::json to_json(const Report& report) {
                          {"bytes", m.bytes},
                          {"build_seconds", m.build_seconds},
                          {"ns", {{"sample", m.ns.sample}, {"pdf", m.ns.pdf}, {"eval", m.ns.eval}}},
-                         {"angles", std::move(angles)}});
+                         {"angles", std::move(angles)},
+                         {"coherence",
+                          {{"stretch_p50", m.coherence.stretch_p50},
+                           {"stretch_p99", m.coherence.stretch_p99},
+                           {"tears", m.coherence.tears + m.coherence.folds}}},
+                         {"qmc_slope", m.convergence.qmc_slope},
+                         {"mc_slope", m.convergence.mc_slope}});
     }
     materials.push_back({{"name", material.name},
                          {"source", material.source},

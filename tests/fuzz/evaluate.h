@@ -1,0 +1,34 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+#include <gonio/brdf/problem.h>
+
+namespace gonio::fuzz {
+
+inline bool usable(const std::vector<Problem>& problems) {
+  return std::none_of(problems.begin(), problems.end(), [](const Problem& p) { return p.fatal; });
+}
+
+inline glm::vec3 direction(float theta, float phi) {
+  return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+}
+
+/// What a table promises whatever it was made of: never negative, never NaN.
+template <class Table>
+void evaluate(const Table& table) {
+  for (const float theta_i : {0.0f, 0.7f, 1.57f})
+    for (const float theta_o : {0.0f, 0.3f, 1.57f})
+      for (const float phi : {0.0f, 1.0f, 3.14159f, -2.0f}) {
+        const glm::vec3 f = table.eval(direction(theta_i, 0.4f), direction(theta_o, phi));
+        for (int c = 0; c < 3; ++c)
+          if (!(f[c] >= 0)) std::abort();
+      }
+}
+
+}  // namespace gonio::fuzz

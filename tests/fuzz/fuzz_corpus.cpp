@@ -1,0 +1,54 @@
+#include <gonio/brdf/exr/stack_file.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "../table_files.h"
+
+// Writes a few small valid files of each format to the folders that the fuzzers start from:
+// fuzz_corpus FOLDER.
+
+namespace fs = std::filesystem;
+
+namespace {
+
+void write(const fs::path& path, const std::string& bytes) {
+  fs::create_directories(path.parent_path());
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+gonio::StackGrid small_stack() {
+  gonio::DiagramGrid diagram;
+  diagram.phi = {0, 1, gonio::pi<double>};
+  diagram.r = {0, 0.25, 1};
+  diagram.density = {1, 2, 3, 1, 2, 0, 1, 1, 0};
+  return {{0.0, 0.5, 1.4}, {diagram, diagram, diagram}};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2) return 2;
+  const fs::path folder = argv[1];
+  using namespace gonio::test;
+  // The header alone: a whole file has 34 MB.
+  std::string merl;
+  for (const std::int32_t n : {90, 90, 180}) append(merl, n);
+  write(folder / "merl" / "header", merl);
+  write(folder / "merl" / "few", merl + std::string(240, '\0'));
+  write(folder / "rgl" / "isotropic", make_rgl().bytes());
+  write(folder / "rgl" / "plain", make_rgl({1, 1, 1}, false).bytes());
+  write(folder / "rgl" / "two", make_rgl({1, 1, 1}, true, 2).bytes());
+  write(folder / "mbsdf" / "scalar", make_mbsdf(0, 2, 3, std::vector<float>(12, 0.3f)));
+  write(folder / "mbsdf" / "rgb", make_mbsdf(1, 2, 2, std::vector<float>(24, 0.3f)));
+  write(folder / "mbsdf" / "transmission", make_mbsdf(0, 2, 3, std::vector<float>(12, 0.3f), "MBSDF_DATA_TRANSMISSION=\n"));
+
+  gonio::StackFile stack;
+  stack.name = "corpus";
+  stack.diagrams = gonio::Stack<float>(small_stack(), gonio::Interpolation::displacement).grid();
+  fs::create_directories(folder / "stack");
+  gonio::save_stack(folder / "stack" / "bare.exr", stack);
+  stack.colour = gonio::Colour(3, 4, std::vector<glm::vec3>(24, glm::vec3(0.5f)));
+  gonio::save_stack(folder / "stack" / "colour.exr", stack);
+  return 0;
+}

@@ -1,0 +1,16 @@
+#include <gonio/brdf/grid.h>
+#include <gonio/mapping/error.h>
+
+#include "evaluate.h"
+
+// Bytes to an MBSDF file; what is usable is made a table and evaluated.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  std::vector<gonio::Problem> problems;
+  const gonio::GridFile file = gonio::parse_mbsdf(std::string(reinterpret_cast<const char*>(data), size), problems);
+  if (!gonio::fuzz::usable(problems)) return 0;
+  try {
+    gonio::fuzz::evaluate(gonio::GridTable(file));
+  } catch (const gonio::Error&) {
+  }
+  return 0;
+}

@@ -1,0 +1,21 @@
+#!/usr/bin/env bash
+# Builds the fuzzers with clang in build-fuzz/ and runs each for the seconds given (60), from generated
+# files on. Fails at the first finding, which stays in build-fuzz/findings/. Exit status 77 without clang.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+seconds=${1:-60}
+
+if ! command -v clang++ >/dev/null; then
+  echo "fuzz: no clang++" >&2
+  exit 77
+fi
+cmake --preset fuzz
+cmake --build --preset fuzz
+
+mkdir -p build-fuzz/corpus build-fuzz/findings
+build-fuzz/tests/fuzz/fuzz_corpus build-fuzz/corpus
+for name in merl rgl mbsdf stack; do
+  echo "fuzz: $name"
+  build-fuzz/tests/fuzz/fuzz_$name -max_total_time="$seconds" -timeout=20 -rss_limit_mb=3000 -max_len=65536 \
+    -print_final_stats=1 -verbosity=0 -artifact_prefix=build-fuzz/findings/$name- build-fuzz/corpus/$name
+done
