@@ -2,6 +2,7 @@
 #include <gonio/tools/convert.h>
 #include <gonio/tools/info.h>
 #include <gonio/tools/report/report.h>
+#include <gonio/tools/stability/stability.h>
 #include <gonio/tools/synth.h>
 #include <gonio/tools/validate.h>
 
@@ -48,6 +49,7 @@ int main(int argc, char** argv) {
   gonio::add_validate(app);
   gonio::add_convert(app);
   gonio::add_report(app);
+  gonio::add_stability(app);
   gonio::add_synth(app);
   try {
     app.parse(argc, argv);
