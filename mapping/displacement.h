@@ -55,8 +55,15 @@ class Displacement {
           return Slope<T>{w0_ * a.phi + w1_ * b.phi, slope_phi(a, b)};
         },
         at.phi, std::min(u0, u1), std::max(u0, u1), pi<T> * std::numeric_limits<T>::epsilon());
-    const Meridians m{d0_.meridian_at(u), d1_.meridian_at(u)};
-    if (std::abs(w0_ * m.first.phi + w1_ * m.second.phi - at.phi) > gap) return std::nullopt;
+    Meridians m{d0_.meridian_at(u), d1_.meridian_at(u)};
+    const T phi_error = at.phi - (w0_ * m.first.phi + w1_ * m.second.phi);
+    if (std::abs(phi_error) > gap) return std::nullopt;
+    if (std::abs(phi_error) > tolerance) {
+      // Beside a meridian without mass u has too few digits for phi: the rest of the way goes without it.
+      const T s0 = 1 / m.first.mass, s1 = 1 / m.second.mass, step = phi_error / (w0_ * s0 + w1_ * s1);
+      if (std::isfinite(s0 * step) && std::isfinite(s1 * step))
+        m = {d0_.meridian_through(m.first.phi + s0 * step), d1_.meridian_through(m.second.phi + s1 * step)};
+    }
 
     // r rises like sqrt(v) at the pole: search in q = sqrt(v), where it is nearly straight.
     const T q0 = std::sqrt(d0_.v_of(m.first, at.r)), q1 = std::sqrt(d1_.v_of(m.second, at.r));
@@ -68,10 +75,19 @@ class Displacement {
         },
         at.r, std::min(q0, q1), std::max(q0, q1), std::numeric_limits<T>::epsilon());
     const T v = std::max(q * q, smallest_v);
-    const auto p0 = d0_.parallel_at(m.first, v), p1 = d1_.parallel_at(m.second, v);
-    const T r = w0_ * p0.r + w1_ * p1.r;
-    if (std::abs(r - at.r) > gap) return std::nullopt;
-    return PolarInverse<T>{u, v, density(m, p0, p1, r)};
+    auto p0 = d0_.parallel_at(m.first, v), p1 = d1_.parallel_at(m.second, v);
+    const T r_error = at.r - (w0_ * p0.r + w1_ * p1.r);
+    if (std::abs(r_error) > gap) return std::nullopt;
+    if (std::abs(r_error) > tolerance) {
+      // The same for v and r, where the density falls to 0: at the horizon of every reflection.
+      const T s0 = m.first.mass / (p0.pdf * p0.r), s1 = m.second.mass / (p1.pdf * p1.r);
+      const T step = r_error / (w0_ * s0 + w1_ * s1);
+      if (std::isfinite(s0 * step) && std::isfinite(s1 * step)) {
+        p0.r = std::clamp(p0.r + s0 * step, T(0), T(1)), p0.pdf = d0_.pdf(m.first, p0.r);
+        p1.r = std::clamp(p1.r + s1 * step, T(0), T(1)), p1.pdf = d1_.pdf(m.second, p1.r);
+      }
+    }
+    return PolarInverse<T>{u, v, density(m, p0, p1, w0_ * p0.r + w1_ * p1.r)};
   }
 
  private:
@@ -85,6 +101,8 @@ class Displacement {
   static constexpr T smallest_v = std::numeric_limits<T>::epsilon() * std::numeric_limits<T>::epsilon();
   // A root that misses its target by more has met a jump of the map, not rounding.
   static constexpr T gap = 4096 * std::numeric_limits<T>::epsilon();
+  // A root is as good as phi and r are held.
+  static constexpr T tolerance = 4 * std::numeric_limits<T>::epsilon();
 
   /// dphi_alpha/du; 0 stands for an infinite slope (a meridian without mass).
   T slope_phi(const Meridian& a, const Meridian& b) const noexcept {

@@ -143,9 +143,13 @@ std::optional<SquareInverse<T>> Stack<T>::invert(T theta_i, const Vec3<T>& wo) c
   } else if (interpolation_ == Interpolation::mixture) {
     const T w0 = 1 - p.alpha;
     const PolarInverse<T> a = invert_one(p.first, at), b = invert_one(p.second, at);
-    const bool first = w0 * a.pdf >= p.alpha * b.pdf;
+    // (u, v) hold r_B^2 to about r_B epsilon. Of the two pre-images the one whose direction that moves
+    // less is taken, kept on its side of the border between them.
+    const T v0 = w0 * a.v, v1 = w0 + p.alpha * b.v;
+    const bool first = a.pdf > 0 && std::sqrt(v0) * (p.alpha * b.pdf) <= std::sqrt(v1) * (w0 * a.pdf);
+    const T margin = 16 * std::numeric_limits<T>::epsilon() * std::sqrt(w0);
     inverse = first ? a : b;
-    inverse.v = first ? w0 * a.v : w0 + p.alpha * b.v;
+    inverse.v = first ? std::max(std::min(v0, w0 - margin), T(0)) : std::max(v1, w0 + margin);
     inverse.pdf = w0 * a.pdf + p.alpha * b.pdf;
   } else {
     const auto found = Displacement<T>(p.first, p.second, p.alpha).invert(at);

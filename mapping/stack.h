@@ -58,7 +58,11 @@ class Stack {
   T pdf(T theta_i, const Vec3<T>& wo) const noexcept;
 
   /// The (u, v) that sample() maps to `wo`, with the pdf; empty for wo.z < 0 and where the density vanishes. A
-  /// mixture has two pre-images: the one of the diagram with the larger share is returned.
+  /// mixture has two pre-images: the one that floats hold better is returned.
+  ///
+  /// In float, where the density is at least 1e-6 of its largest value: sample() then invert() comes
+  /// back to (u, v) within 1e-4 (not for mixtures); invert() then sample() to `wo` within 1e-3 in each
+  /// component (mixtures: 5e-3), the worst being directions where the density falls to 0.
   std::optional<SquareInverse<T>> invert(T theta_i, const Vec3<T>& wo) const noexcept;
 
   Interpolation interpolation() const noexcept { return interpolation_; }

@@ -3,9 +3,45 @@
 #include <algorithm>
 #include <cmath>
 
+#include <gonio/brdf/frame.h>
 #include <gonio/brdf/proof/random.h>
 
 namespace gonio::proof {
+namespace {
+
+/// Stack::invert() with directions of the surface.
+auto inverse_of(const Stack<float>& stack) {
+  return [&stack](const glm::vec3& wi, const glm::vec3& wo) -> std::optional<glm::vec2> {
+    const IncidentFrame frame(wi);
+    const auto inverse = stack.invert(frame.theta_i, frame.to_diagram(wo));
+    if (!inverse) return std::nullopt;
+    return glm::vec2(inverse->at.u, inverse->at.v);
+  };
+}
+
+}  // namespace
+
+Subject subject_of(const Sampler& sampler) {
+  Subject subject = subject_of<Sampler>(sampler);
+  subject.invert = inverse_of(sampler.stack());
+  return subject;
+}
+
+Subject subject_of(const Stack<float>& stack) {
+  Subject subject;
+  subject.sample = [&stack](const glm::vec3& wi, const glm::vec2& u) -> std::optional<BsdfSample> {
+    const IncidentFrame frame(wi);
+    const auto s = stack.sample(frame.theta_i, u.x, u.y);
+    if (!(s.pdf > 0)) return std::nullopt;
+    return BsdfSample{frame.to_surface(s.wo), s.pdf, glm::vec3(1)};
+  };
+  subject.pdf = [&stack](const glm::vec3& wi, const glm::vec3& wo) {
+    const IncidentFrame frame(wi);
+    return static_cast<double>(stack.pdf(frame.theta_i, frame.to_diagram(wo)));
+  };
+  subject.invert = inverse_of(stack);
+  return subject;
+}
 
 Quality measure(const Subject& subject, double theta_i, const MeasureOptions& options) {
   const glm::vec3 wi(static_cast<float>(std::sin(theta_i)), 0, static_cast<float>(std::cos(theta_i)));

@@ -15,6 +15,8 @@ struct Subject {
   std::function<std::optional<BsdfSample>(const glm::vec3& wi, const glm::vec2& u)> sample;
   std::function<double(const glm::vec3& wi, const glm::vec3& wo)> pdf;
   std::function<glm::vec3(const glm::vec3& wi, const glm::vec3& wo)> f_r;
+  /// Optional: the numbers that sample() maps to wo; nothing where no draw falls.
+  std::function<std::optional<glm::vec2>(const glm::vec3& wi, const glm::vec3& wo)> invert = nullptr;
 };
 
 /// A subject of anything with Sampler's interface. The sampler must outlive it.
@@ -24,6 +26,13 @@ Subject subject_of(const S& sampler) {
           [&](const glm::vec3& wi, const glm::vec3& wo) { return static_cast<double>(sampler.pdf(wi, wo)); },
           [&](const glm::vec3& wi, const glm::vec3& wo) { return sampler.eval(wi, wo); }};
 }
+
+/// The same for a Sampler, with the inverse of its stack.
+Subject subject_of(const Sampler& sampler);
+
+/// A stack alone, without a BRDF: weights are 1, and `f_r` is empty. measure() cannot take it,
+/// check_invariants() can. The stack must outlive it.
+Subject subject_of(const Stack<float>& stack);
 
 struct MeasureOptions {
   int grid = 256;                        ///< relvar is measured on grid x grid jittered points of the square

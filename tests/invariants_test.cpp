@@ -1,0 +1,235 @@
+#include <gonio/brdf/proof/gtest.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <memory>
+
+#include <gonio/brdf/baseline.h>
+#include <gonio/brdf/proof/gallery.h>
+#include <gonio/brdf/sampler.h>
+
+namespace gonio::proof {
+namespace {
+
+// One run of the harness per entry of the Gallery, method and incident angle: the significance is
+// shared out over about as many.
+constexpr int runs = 1000;
+
+#ifdef GONIO_SLOW_TESTS
+constexpr std::uint64_t draws = 1000000;
+#else
+constexpr std::uint64_t draws = 200000;
+#endif
+
+const double angles[] = {
+    0, 1e-6, 0.2, 0.225, 0.45 - 1e-6, 0.45, 0.45 + 1e-6, 0.7, 0.95, 1.3, 89.9 * pi<double> / 180, pi<double> / 2};
+
+InvariantOptions options_for(Interpolation interpolation) {
+  InvariantOptions options;
+  options.runs = runs;
+  options.draws = draws;
+  options.points = 2000;
+  if (interpolation == Interpolation::mixture) options.direction_bound = 5e-3;  // see Stack::invert()
+  options.one_to_one = interpolation != Interpolation::mixture;
+  options.continuous = interpolation == Interpolation::displacement;
+  return options;
+}
+
+constexpr Interpolation methods[] = {Interpolation::nearest, Interpolation::mixture, Interpolation::displacement};
+
+class StackGallery : public testing::TestWithParam<GalleryStack> {};
+
+TEST_P(StackGallery, InvariantsHold) {
+  const GalleryStack& entry = GetParam();
+  for (const Interpolation method : methods) {
+    const Stack<float> stack(entry.grid, method);
+    InvariantOptions options = options_for(method);
+    options.symmetric = entry.grid.diagrams.front().azimuth == Azimuth::half;
+    options.continuous = options.continuous && !entry.zero_regions;
+    for (const double theta_i : angles) {
+      SCOPED_TRACE(entry.name + ", " + to_string(method));
+      EXPECT_THAT_SAMPLER_INVARIANTS_HOLD(subject_of(stack), theta_i, options);
+    }
+  }
+}
+
+class TableGallery : public testing::TestWithParam<GalleryTable> {};
+
+const double table_angles[] = {0, 0.3, 0.8, 89.9 * pi<double> / 180, pi<double> / 2};
+
+TEST_P(TableGallery, InvariantsHold) {
+  const auto table = std::make_shared<const BrdfTable>(to_table(GetParam()));
+  StackOptions small;
+  small.incident = 12;
+  small.meridians = small.parallels = 16;
+  const StackGrid grid = build_stack(*table, small);
+  for (const Interpolation method : methods) {
+    const Sampler sampler(table, grid, method);
+    for (const double theta_i : table_angles) {
+      SCOPED_TRACE(GetParam().name + ", " + to_string(method));
+      EXPECT_THAT_SAMPLER_INVARIANTS_HOLD(subject_of(sampler), theta_i, options_for(method));
+    }
+  }
+  InvariantOptions options;
+  options.runs = runs;
+  options.draws = draws;
+  for (const double theta_i : {0.3, pi<double> / 2}) {
+    EXPECT_THAT_SAMPLER_INVARIANTS_HOLD(subject_of(UniformSampler(table)), theta_i, options) << "uniform";
+    EXPECT_THAT_SAMPLER_INVARIANTS_HOLD(subject_of(CosineSampler(table)), theta_i, options) << "cosine";
+  }
+}
+
+template <class Entry>
+std::string name_of(const testing::TestParamInfo<Entry>& info) {
+  std::string name = info.param.name;
+  for (char& c : name)
+    if (c == '-') c = '_';
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Gallery, StackGallery, testing::ValuesIn(gallery_stacks()), name_of<GalleryStack>);
+INSTANTIATE_TEST_SUITE_P(Gallery, TableGallery, testing::ValuesIn(gallery_tables()), name_of<GalleryTable>);
+
+// Negative controls: samplers that are wrong on purpose. Each must fail, by the check that is there for it.
+class Wrong : public testing::Test {
+ protected:
+  static const Sampler& sampler() {
+    static const Sampler s = [] {
+      for (const GalleryTable& entry : gallery_tables())
+        if (entry.name == "asymmetric") return Sampler(std::make_shared<const BrdfTable>(to_table(entry)));
+      throw std::logic_error("the Gallery has no asymmetric table");
+    }();
+    return s;
+  }
+
+  static bool fails(const Subject& subject, const std::string& name) {
+    InvariantOptions options;
+    options.points = 1000;
+    options.draws = 300000;
+    for (const Check& check : check_invariants(subject, 0.5, options))
+      if (check.name == name) return !check.passed;
+    return false;
+  }
+};
+
+TEST_F(Wrong, TheSamplerItselfIsRight) { EXPECT_THAT_SAMPLER_INVARIANTS_HOLD(subject_of(sampler()), 0.5); }
+
+TEST_F(Wrong, PdfOffByOnePerCent) {
+  Subject subject = subject_of(sampler());
+  subject.pdf = [](const glm::vec3& wi, const glm::vec3& wo) { return 1.01 * sampler().pdf(wi, wo); };
+  EXPECT_TRUE(fails(subject, "mass"));
+  EXPECT_TRUE(fails(subject, "pdf"));
+  EXPECT_FALSE(fails(subject, "chi_square"));  // which judges the shape
+}
+
+TEST_F(Wrong, ReturnedPdfOffByOnePerCent) {
+  Subject subject = subject_of(sampler());
+  subject.sample = [](const glm::vec3& wi, const glm::vec2& u) {
+    auto s = sampler().sample(wi, u);
+    if (s) s->pdf *= 1.01f;
+    return s;
+  };
+  EXPECT_TRUE(fails(subject, "pdf"));
+  EXPECT_TRUE(fails(subject, "weight"));
+}
+
+TEST_F(Wrong, WeightOffByOnePerCent) {
+  Subject subject = subject_of(sampler());
+  subject.sample = [](const glm::vec3& wi, const glm::vec2& u) {
+    auto s = sampler().sample(wi, u);
+    if (s) s->weight *= 1.01f;
+    return s;
+  };
+  EXPECT_TRUE(fails(subject, "weight"));
+  EXPECT_TRUE(fails(subject, "albedo"));
+}
+
+// The draws are half a texel of a 90-cell table (half a degree) beside their density.
+TEST_F(Wrong, HalfATexelAside) {
+  Subject subject = subject_of(sampler());
+  subject.sample = [](const glm::vec3& wi, const glm::vec2& u) {
+    auto s = sampler().sample(wi, u);
+    if (!s) return s;
+    const Polar<float> at = direction_to_polar(s->wo);
+    const float theta = std::min(radius_to_theta(at.r) + 0.5f * pi<float> / 180, 1.5707f);
+    s->wo = polar_to_direction(Polar<float>{theta_to_radius(theta), at.phi});
+    return s;
+  };
+  EXPECT_TRUE(fails(subject, "chi_square"));
+  EXPECT_TRUE(fails(subject, "moments"));
+  EXPECT_TRUE(fails(subject, "round_trip_square"));
+}
+
+TEST_F(Wrong, SwappedDirections) {
+  Subject subject = subject_of(sampler());
+  subject.f_r = [](const glm::vec3& wi, const glm::vec3& wo) { return sampler().eval(wo, wi); };
+  EXPECT_TRUE(fails(subject, "weight"));
+  EXPECT_TRUE(fails(subject, "albedo"));
+  subject = subject_of(sampler());
+  subject.pdf = [](const glm::vec3& wi, const glm::vec3& wo) { return static_cast<double>(sampler().pdf(wo, wi)); };
+  EXPECT_TRUE(fails(subject, "chi_square"));
+  EXPECT_TRUE(fails(subject, "mass"));
+  EXPECT_TRUE(fails(subject, "pdf"));
+}
+
+// The two halves of the square change places: the same draws, the same pdf, but torn in the middle.
+TEST_F(Wrong, Torn) {
+  Subject subject = subject_of(sampler());
+  subject.sample = [](const glm::vec3& wi, const glm::vec2& u) {
+    return sampler().sample(wi, {u.x < 0.5f ? u.x + 0.5f : u.x - 0.5f, u.y});
+  };
+  EXPECT_TRUE(fails(subject, "tears"));
+  EXPECT_TRUE(fails(subject, "round_trip_square"));
+  EXPECT_FALSE(fails(subject, "chi_square"));
+}
+
+TEST_F(Wrong, NearestTakenForContinuous) {
+  for (const GalleryStack& entry : gallery_stacks()) {
+    if (entry.name != "specular") continue;
+    const Stack<float> stack(entry.grid, Interpolation::nearest);
+    InvariantOptions options;
+    options.draws = 1000;
+    const Checks checks = check_invariants(subject_of(stack), 0.225, options);
+    EXPECT_NE(failures(checks).find("jumps:"), std::string::npos);
+    EXPECT_NE(failures(checks).find("jumps_of_map:"), std::string::npos);
+  }
+}
+
+TEST_F(Wrong, NoSupport) {
+  Subject subject = subject_of(sampler());
+  subject.pdf = [](const glm::vec3& wi, const glm::vec3& wo) { return wo.x > 0.5f ? 0.0 : sampler().pdf(wi, wo); };
+  EXPECT_TRUE(fails(subject, "support"));
+  EXPECT_TRUE(fails(subject, "jumps"));
+}
+
+TEST_F(Wrong, NotTurningWithTheSurface) {  // wi's azimuth is forgotten
+  Subject subject = subject_of(sampler());
+  subject.pdf = [](const glm::vec3& wi, const glm::vec3& wo) {
+    return static_cast<double>(sampler().pdf({std::sqrt(1 - wi.z * wi.z), 0, wi.z}, wo));
+  };
+  EXPECT_TRUE(fails(subject, "rotation"));
+}
+
+TEST(Invariants, PlotOfAFailure) {
+  Subject uniform;
+  uniform.sample = [](const glm::vec3&, const glm::vec2& u) -> std::optional<BsdfSample> {
+    const Polar<float> at{std::sqrt(u.x), 2 * pi<float> * u.y};
+    return BsdfSample{polar_to_direction(at), 1 / (2 * pi<float>), glm::vec3(1)};
+  };
+  uniform.pdf = [](const glm::vec3&, const glm::vec3& wo) { return wo.z / pi<double>; };
+  InvariantOptions options;
+  options.draws = 50000;
+  options.plot = (std::filesystem::temp_directory_path() / "gonio_invariants_test.svg").string();
+  EXPECT_FALSE(all_passed(check_invariants(uniform, 0.3, options)));
+  EXPECT_GT(std::filesystem::file_size(options.plot), 1000u);
+  std::filesystem::remove(options.plot);
+}
+
+}  // namespace
+
+void PrintTo(const GalleryStack& entry, std::ostream* out) { *out << entry.name << ": " << entry.reason; }
+void PrintTo(const GalleryTable& entry, std::ostream* out) { *out << entry.name << ": " << entry.reason; }
+
+}  // namespace gonio::proof
