@@ -153,6 +153,7 @@ void write_chart(const std::filesystem::path& path, const std::vector<StabilityR
     }
     const double y = height - 35;
     text(out, left, y, "Green: all three hold. A blank or negative number: below the bound. Bold: the library's own.");
+    out << "</svg>\n";
   });
 }
 
@@ -174,6 +175,7 @@ void write_figure_3(const std::filesystem::path& path) {
       error.curve(out, "#222", [&](double t) { return 100 * falling(t, intervals).absolute; });
       error.curve(out, "#d95f02", [&](double t) { return 100 * falling(t, intervals).relative; });
     }
+    out << "</svg>\n";
   });
 }
 
@@ -237,6 +239,7 @@ void write_figure_6(const std::filesystem::path& path) {
       out << "</g>\n";
       text(out, cx, cy + radius + 26, captions[panel], "middle", "font-size=\"14\"");
     }
+    out << "</svg>\n";
   });
 }
 
