@@ -56,7 +56,7 @@ struct Plot {
     out << "<polyline fill=\"none\" stroke=\"" << colour << "\" stroke-width=\"1.6\" points=\"";
     constexpr int steps = 900;
     for (int k = 0; k < steps; ++k) {
-      const double theta = 90 * degree * k / steps;
+      const double theta = 90 * degree * (k + 0.5) / steps;  // never on a parallel
       out << px(theta) << ',' << std::setprecision(2) << py(function(theta)) << std::setprecision(1) << ' ';
     }
     out << "\"/>\n";
@@ -159,21 +159,23 @@ void write_chart(const std::filesystem::path& path, const std::vector<StabilityR
 
 void write_figure_3(const std::filesystem::path& path) {
   write_stream_atomically(path, [](std::ostream& out) {
-    begin(out, 920, 700, "The error of M_E (Havran et al. 2003, Fig. 3)",
-          "A density that is linear in theta between two parallels (d_C, blue) is read as linear in sqrt(1 - cos theta) (d_R, red).");
-    int row = 0;
+    begin(out, 1250, 385, "The error of M_E (Havran et al. 2003, Fig. 3)",
+          "A density that falls from 1 to 0 between neighbouring parallels, linear in theta (d_C), is read as linear in sqrt(1 - cos theta) "
+          "(d_R). Errors are magnitudes: d_R lies below d_C.");
+    const Plot density{60, 95, 340, 230, 0, 1};
+    density.axes(out, "density, N = 2: d_C blue, d_R red", 0.2, 1);
+    density.curve(out, "#2166ac", [](double t) { return falling(t, 1).correct; });
+    density.curve(out, "#b2182b", [](double t) { return falling(t, 1).real; });
+    double x = 470;
     for (const int intervals : {1, 10}) {
-      const double y = 85 + 320 * row++;
       const WorstReading worst = worst_reading_error(intervals);
-      const std::string name = intervals == 1 ? "one interval (N = 2)" : "ten intervals";
-      const Plot density{60, y, 370, 230, 0, 1}, error{520, y, 370, 230, 0, intervals == 1 ? 25.0 : 5.0};
-      density.axes(out, name + ": density, falling from 1 to 0 in every interval", 0.2, 1);
-      density.curve(out, "#2166ac", [&](double t) { return falling(t, intervals).correct; });
-      density.curve(out, "#b2182b", [&](double t) { return falling(t, intervals).real; });
-      error.axes(out, "error [%]: absolute (black), at most " + fixed(100 * worst.absolute, 2) + "; relative (orange), at most " +
-                          fixed(100 * worst.relative, 1), intervals == 1 ? 5 : 1, 0);
-      error.curve(out, "#222", [&](double t) { return 100 * falling(t, intervals).absolute; });
-      error.curve(out, "#d95f02", [&](double t) { return 100 * falling(t, intervals).relative; });
+      const Plot error{x, 95, 340, 230, 0, intervals == 1 ? 25.0 : 5.0};
+      error.axes(out, std::string(intervals == 1 ? "N = 2" : "ten intervals") + ", error [%]: absolute (black) to " + fixed(100 * worst.absolute, 2) +
+                          ", relative (orange) to " + fixed(100 * worst.relative, 1),
+                 intervals == 1 ? 5 : 1, 0);
+      error.curve(out, "#222", [&](double t) { return 100 * std::abs(falling(t, intervals).absolute); });
+      error.curve(out, "#d95f02", [&](double t) { return 100 * std::abs(falling(t, intervals).relative); });
+      x += 410;
     }
     out << "</svg>\n";
   });
