@@ -166,8 +166,7 @@ TEST(Stability, OperationsDoNotDependOnTheData) {
     }
   }
   EXPECT_GT(all.least, 100);
-  RecordProperty("least", all.least), RecordProperty("most", all.most);
-  EXPECT_LE(all.most - all.least, 16) << all.least << " to " << all.most;
+  EXPECT_LE(all.most - all.least, 6) << all.least << " to " << all.most;
 
   // The count sees a method that iterates: inverting the same masses by a root search.
   Range iterated;

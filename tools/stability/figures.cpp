@@ -161,7 +161,7 @@ void write_figure_3(const std::filesystem::path& path) {
   write_stream_atomically(path, [](std::ostream& out) {
     begin(out, 1250, 385, "The error of M_E (Havran et al. 2003, Fig. 3)",
           "A density that falls from 1 to 0 between neighbouring parallels, linear in theta (d_C), is read as linear in sqrt(1 - cos theta) "
-          "(d_R). Errors are magnitudes: d_R lies below d_C.");
+          "(d_R). Errors: absolute black, relative orange.");
     const Plot density{60, 95, 340, 230, 0, 1};
     density.axes(out, "density, N = 2: d_C blue, d_R red", 0.2, 1);
     density.curve(out, "#2166ac", [](double t) { return falling(t, 1).correct; });
@@ -170,8 +170,8 @@ void write_figure_3(const std::filesystem::path& path) {
     for (const int intervals : {1, 10}) {
       const WorstReading worst = worst_reading_error(intervals);
       const Plot error{x, 95, 340, 230, 0, intervals == 1 ? 25.0 : 5.0};
-      error.axes(out, std::string(intervals == 1 ? "N = 2" : "ten intervals") + ", error [%]: absolute (black) to " + fixed(100 * worst.absolute, 2) +
-                          ", relative (orange) to " + fixed(100 * worst.relative, 1),
+      error.axes(out, std::string(intervals == 1 ? "N = 2" : "ten intervals") + ", error [%]: to " + fixed(100 * worst.absolute, 2) + " and " +
+                          fixed(100 * worst.relative, 1),
                  intervals == 1 ? 5 : 1, 0);
       error.curve(out, "#222", [&](double t) { return 100 * std::abs(falling(t, intervals).absolute); });
       error.curve(out, "#d95f02", [&](double t) { return 100 * std::abs(falling(t, intervals).relative); });
