@@ -127,7 +127,7 @@ TEST_F(ToolTest, Version) {
 
 TEST_F(ToolTest, UsageErrors) {
   write("a.mbsdf", test::sample_mbsdf());
-  expect_error("", {"gonio: ", "expected one of info, validate, convert, report, synth"});
+  expect_error("", {"gonio: ", "expected one of info, validate, convert, report, stability, synth"});
   expect_error("frobnicate", {"found 'frobnicate'", "info"});
   expect_error("info", {"gonio info: ", "FILE"});
   expect_error("info a.mbsdf b.mbsdf", {"b.mbsdf"});
