@@ -31,6 +31,7 @@ struct RadialCell {
   ///
   /// @param tau in (0, 1]. @pre mass(1) > 0.
   T invert(T tau) const noexcept {
+    using std::acos, std::cbrt, std::cos, std::sqrt;  // other types of T bring their own
     const T delta = d1 - d0;
     const T scale = 1 / (r0 * (d0 + d1) + h * (d0 + 2 * d1) / 3);
     const T c = 2 * r0 * d0 * scale;
@@ -39,14 +40,14 @@ struct RadialCell {
 
     const T p3 = std::max((b * tau + c * c / 3) / 3, T(0));            // P / 3
     const T q2 = c * c * c / 27 + (b * c / 3 + a * tau) * tau / 2;     // Q / 2
-    const T root_p3 = std::sqrt(p3);
+    const T root_p3 = sqrt(p3);
     const T cube = p3 * root_p3;
     T z;
     if (q2 >= cube) {  // one real root: Cardan, here a sum of positive terms
-      const T t = std::cbrt(q2 + std::sqrt(q2 - cube) * std::sqrt(q2 + cube));
+      const T t = cbrt(q2 + sqrt(q2 - cube) * sqrt(q2 + cube));
       z = t > 0 ? t + p3 / t : T(0);
     } else {  // three: the trigonometric form; the angle is in [0, pi/3], so the cosine is >= 1/2
-      z = 2 * root_p3 * std::cos(std::acos(std::max(q2 / cube, T(-1))) / 3);
+      z = 2 * root_p3 * cos(acos(std::max(q2 / cube, T(-1))) / 3);
     }
     const T denominator = z + c / 3;
     return denominator > tau ? tau / denominator : T(1);

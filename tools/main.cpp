@@ -4,6 +4,7 @@
 #include <gonio/tools/info.h>
 #include <gonio/tools/light.h>
 #include <gonio/tools/report/report.h>
+#include <gonio/tools/stability/stability.h>
 #include <gonio/tools/synth.h>
 #include <gonio/tools/validate.h>
 
@@ -50,6 +51,7 @@ int main(int argc, char** argv) {
   gonio::add_validate(app);
   gonio::add_convert(app);
   gonio::add_report(app);
+  gonio::add_stability(app);
   gonio::add_synth(app);
   gonio::add_fit(app);
   gonio::add_light(app);
