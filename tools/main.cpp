@@ -51,10 +51,10 @@ int main(int argc, char** argv) {
   gonio::add_validate(app);
   gonio::add_convert(app);
   gonio::add_report(app);
-  gonio::add_stability(app);
   gonio::add_synth(app);
   gonio::add_fit(app);
   gonio::add_light(app);
+  gonio::add_stability(app);
   try {
     app.parse(argc, argv);
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
