@@ -8,7 +8,7 @@
 #include <ostream>
 #include <sstream>
 
-#include <gonio/brdf/atomic_file.h>
+#include <gonio/mapping/atomic_file.h>
 #include <gonio/mapping/hemisphere.h>
 
 namespace gonio::proof {

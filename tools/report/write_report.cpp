@@ -9,7 +9,7 @@
 #include <ostream>
 #include <sstream>
 
-#include <gonio/brdf/atomic_file.h>
+#include <gonio/mapping/atomic_file.h>
 #include <gonio/mapping/concentric.h>
 #include <gonio/mapping/error.h>
 
