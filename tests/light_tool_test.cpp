@@ -99,6 +99,8 @@ TEST_F(LightTool, UnitsAreThoseOfTheFile) {
   EXPECT_NE(read("out").find("318.31 mW/sr at"), std::string::npos) << read("out");
   EXPECT_NE(read("out").find("flux             999.97 mW,"), std::string::npos) << read("out");
   EXPECT_EQ(read("out").find(" cd "), std::string::npos) << read("out");
+  ASSERT_EQ(run("light plot uv.ies uv.svg"), 0) << read("err");
+  EXPECT_NE(read("uv.svg").find("mW/sr, flux 1000 mW<"), std::string::npos);
 }
 
 TEST_F(LightTool, RefusesWithOneLine) {

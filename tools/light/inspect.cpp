@@ -11,13 +11,6 @@ namespace {
 
 constexpr double degree = pi<double> / 180;
 
-/// What the integral of an intensity in `unit` is in.
-std::string flux_unit(const std::string& unit) {
-  if (unit == "cd") return "lm";
-  const std::size_t per = unit.rfind("/sr");
-  return per != std::string::npos && per + 3 == unit.size() ? unit.substr(0, per) : unit + " sr";
-}
-
 std::string shown(const std::string& text) { return text.empty() ? "-" : text; }
 
 }  // namespace
@@ -35,7 +28,7 @@ void light_info(const LightCommand& o) {
       std::snprintf(buffer, sizeof buffer, format, values...);
       return std::string(buffer);
     };
-    const std::string total = flux_unit(light.unit);
+    const std::string total = flux_unit(light);
     std::printf("%s\n", file.c_str());
     line("format", light.format);
     line("manufacturer", shown(light.manufacturer));
@@ -80,8 +73,9 @@ void light_validate(const LightCommand& o) {
       const Luminaire light = load_any_light(file, o.reading(), deviations);
       const double total = flux(light.diagram);
       if (light.stated_lumens && std::abs(total / *light.stated_lumens - 1) > 0.05)
-        deviations.push_back({0, "luminous flux", std::to_string(total) + " lm by quadrature",
-                              std::to_string(*light.stated_lumens) + " lm as the file states"});
+        deviations.push_back({0, "flux",
+                              std::to_string(total) + " " + flux_unit(light) + " by quadrature",
+                              std::to_string(*light.stated_lumens) + " as the file states"});
       std::printf("%s: %s, %zu deviation%s\n", file.c_str(), light.format.c_str(),
                   deviations.size(), deviations.size() == 1 ? "" : "s");
       deviating += !deviations.empty();
