@@ -46,6 +46,15 @@ TEST(DiskImage, AreasOfConstants) {
   }
 }
 
+TEST(DiskImage, MedianSlopes) {
+  const MedianSlopes ggx = median_slopes(rasterise(512, GgxNdf{0.1, 0.4}));
+  EXPECT_NEAR(ggx.x * std::sqrt(3), 0.1, 0.005);
+  EXPECT_NEAR(ggx.y * std::sqrt(3), 0.4, 0.005);
+  const MedianSlopes beckmann = median_slopes(rasterise(512, BeckmannNdf{0.5, 0.2}));
+  EXPECT_NEAR(beckmann.x / 0.4769, 0.5, 0.006);
+  EXPECT_NEAR(beckmann.y / 0.4769, 0.2, 0.006);
+}
+
 TEST(DiskImage, RefusesWhatIsNoDistribution) {
   DiskImage d(16);
   EXPECT_THROW(normalise(d), Error);

@@ -40,8 +40,6 @@ TEST(Shadowing, ClosedFormsAt512) {
     const double ggx = worst_error(GgxNdf{ax, ay}, 512), beckmann = worst_error(BeckmannNdf{ax, ay}, 512);
     EXPECT_LT(ggx, 1e-3) << "GGX " << ax << ' ' << ay;
     EXPECT_LT(beckmann, 1e-3) << "Beckmann " << ax << ' ' << ay;
-    RecordProperty("ggx", std::to_string(ggx));
-    if (std::getenv("GONIO_PRINT")) std::printf("%g %g: GGX %.2e Beckmann %.2e\n", ax, ay, ggx, beckmann);
   }
 }
 
@@ -63,7 +61,6 @@ TEST(Shadowing, FastIsTheDirectSum) {
       worst = std::max(worst, std::abs(shadowing.sigma(k) - shadowing.sigma_direct(k)));
     }
     EXPECT_LT(worst, 1e-4);
-    if (std::getenv("GONIO_PRINT")) std::printf("fast - direct %.2e\n", worst);
   }
 }
 

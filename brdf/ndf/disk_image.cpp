@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include <gonio/brdf/parallel.h>
 #include <gonio/mapping/error.h>
@@ -107,6 +108,29 @@ double projected_area(const DiskImage& ndf) {
 
 double microsurface_area(const DiskImage& ndf) {
   return sum(ndf, [](const PixelBounds& p) { return orthographic_solid_angle(p.x0, p.x1, p.y0, p.y1); });
+}
+
+MedianSlopes median_slopes(const DiskImage& ndf) {
+  std::vector<std::pair<double, double>> x, y;  // slope, mass
+  for (int row = 0; row < ndf.size; ++row)
+    for (int column = 0; column < ndf.size; ++column) {
+      const double d = static_cast<double>(ndf.at(row, column));
+      if (!(d > 0)) continue;
+      const PixelBounds p = pixel_bounds(ndf.size, row, column);
+      const Vec3<double> facet = orthographic_normal_integral(p.x0, p.x1, p.y0, p.y1);
+      if (!(facet.z > 0)) continue;
+      x.emplace_back(std::abs(facet.x) / facet.z, d * facet.z);
+      y.emplace_back(std::abs(facet.y) / facet.z, d * facet.z);
+    }
+  const auto median = [](std::vector<std::pair<double, double>>& slopes) {
+    std::sort(slopes.begin(), slopes.end());
+    double total = 0, below = 0;
+    for (const auto& [slope, mass] : slopes) total += mass;
+    for (const auto& [slope, mass] : slopes)
+      if ((below += mass) >= total / 2) return slope;
+    return 0.0;
+  };
+  return {median(x), median(y)};
 }
 
 double normalise(DiskImage& ndf) {

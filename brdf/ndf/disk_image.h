@@ -53,6 +53,13 @@ double projected_area(const DiskImage& ndf);
 /// The integral of D d omega: area of the microsurface per area of the surface, at least the above.
 double microsurface_area(const DiskImage& ndf);
 
+/// Medians of the slopes |h.x| / h.z and |h.y| / h.z with respect to D cos(theta) d omega. For GGX they
+/// are alpha / sqrt(3) along each axis, for Beckmann 0.4769 alpha. Resolved to about a pixel.
+struct MedianSlopes {
+  double x, y;
+};
+MedianSlopes median_slopes(const DiskImage& ndf);
+
 /// Scales the image so that projected_area() is 1 and clears the pixels outside the disk.
 /// @return projected_area() before
 /// @throws Error if a pixel within the disk is negative or not finite, or if all are 0

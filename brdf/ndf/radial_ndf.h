@@ -59,9 +59,9 @@ struct ExtractedNdf {
 /// luminance. A diffuse part of the material counts as wide facets, as in the paper. Beyond 89
 /// degrees, where tables end, f_r cos is held constant.
 /// @throws Error if the table has no retro-reflection
-ExtractedNdf extract_ndf(const BrdfTable& table, int nodes = 256);
+ExtractedNdf extract_ndf(const BrdfTable& table, int nodes = 512);
 
 /// The same from retro-reflection given as a function: f_r(k, k) at polar angle theta < 90 degrees.
-ExtractedNdf extract_ndf(const std::function<double(double theta)>& retro_reflection, int nodes = 256);
+ExtractedNdf extract_ndf(const std::function<double(double theta)>& retro_reflection, int nodes = 512);
 
 }  // namespace gonio
