@@ -109,11 +109,11 @@ void write_disk_picture(const std::filesystem::path& path, const DiskImage& imag
                         const std::string& unit) {
   constexpr double side = 512, left = 30, top = 70, bar = left + side + 40;
   write_stream_atomically(path, [&](std::ostream& out) {
-    out << "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" viewBox=\"0 0 720 610\" "
-           "font-family=\"sans-serif\" font-size=\"13\">\n<rect width=\"720\" height=\"610\" fill=\"white\"/>\n"
+    out << "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" viewBox=\"0 0 740 610\" "
+           "font-family=\"sans-serif\" font-size=\"13\">\n<rect width=\"740\" height=\"610\" fill=\"white\"/>\n"
            "<text x=\"30\" y=\"28\" font-size=\"17\">";
     for (const char c : title) c == '&' ? out << "&amp;" : c == '<' ? out << "&lt;" : out << c;
-    out << "</text>\n<text x=\"30\" y=\"50\" fill=\"#555\">the hemisphere from above, x to the right, y up; contrast stretched "
+    out << "</text>\n<text x=\"30\" y=\"50\" fill=\"#555\">from above, x to the right, y up; contrast stretched "
         << (contrast.logarithmic ? "logarithmically" : "linearly") << " from " << number(contrast.low) << " to " << number(contrast.high)
         << unit << "</text>\n<image x=\"" << left << "\" y=\"" << top << "\" width=\"" << side << "\" height=\"" << side
         << "\" xlink:href=\"data:image/png;base64," << base64(png(image, contrast)) << "\"/>\n";

@@ -14,7 +14,7 @@ namespace {
 constexpr double degree = pi<double> / 180;
 constexpr double top = 75, width = 400, height = 300, left[] = {70, 560};
 
-double y_of(double t) { return top + height * (1 - std::clamp(t, 0.0, 1.0)); }
+double y_of(double t) { return top + height * (1 - std::clamp(t, -1.0, 2.0)); }
 
 void text(std::ostream& out, double x, double y, const std::string& what, const char* anchor) {
   out << "<text x=\"" << x << "\" y=\"" << y << "\" text-anchor=\"" << anchor << "\">" << what << "</text>\n";
@@ -22,7 +22,7 @@ void text(std::ostream& out, double x, double y, const std::string& what, const 
 
 template <class X, class Y>
 void curve(std::ostream& out, const NdfProfile& profile, int steps, const X& x, const Y& y) {
-  out << "<polyline fill=\"none\" stroke-width=\"1.8\" stroke=\"" << profile.colour << "\" stroke-dasharray=\"" << profile.dashes << "\" points=\"";
+  out << "<polyline clip-path=\"url(#plots)\" fill=\"none\" stroke-width=\"1.8\" stroke=\"" << profile.colour << "\" stroke-dasharray=\"" << profile.dashes << "\" points=\"";
   for (int k = 0; k <= steps; ++k) out << x(static_cast<double>(k) / steps) << ',' << y(static_cast<double>(k) / steps) << ' ';
   out << "\"/>\n";
 }
@@ -38,7 +38,8 @@ void write_ndf_profiles(const std::filesystem::path& path, const std::string& ti
         << "\" font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"1000\" height=\"470\" fill=\"white\"/>\n<text x=\"20\" y=\"26\" "
            "font-size=\"17\">";
     for (const char c : title) c == '&' ? out << "&amp;" : c == '<' ? out << "&lt;" : out << c;
-    out << "</text>\n";
+    out << "</text>\n<clipPath id=\"plots\"><rect x=\"" << left[0] << "\" y=\"" << top - 1 << "\" width=\"" << left[1] + width - left[0]
+        << "\" height=\"" << height + 1 << "\"/></clipPath>\n";
     text(out, left[0], top - 12, "D [1/sr], normalised; logarithmic over a square-root scale of theta", "start");
     text(out, left[1], top - 12, "G1 = cos / sigma", "start");
     out << "<g stroke=\"#ccc\">\n";
