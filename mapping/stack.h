@@ -18,6 +18,8 @@ enum class Interpolation {
   blend          ///< the densities interpolated, on lines that all diagrams share; see Blend
 };
 
+inline constexpr Interpolation interpolations[] = {Interpolation::nearest, Interpolation::mixture,
+                                                   Interpolation::displacement, Interpolation::blend};
 const char* to_string(Interpolation interpolation) noexcept;
 
 /// What the disk of a diagram stands for.
@@ -26,6 +28,7 @@ enum class Chart {
   half       ///< the half vectors that reflect wi to directions above the horizon; see HalfVectorChart
 };
 
+inline constexpr Chart charts[] = {Chart::outgoing, Chart::half};
 const char* to_string(Chart chart) noexcept;
 
 /// A stack of diagrams as data, in double: what a Stack is built from and a stack file holds.

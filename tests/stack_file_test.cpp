@@ -164,7 +164,8 @@ TEST_F(StackFileTest, RoundTripIsBitExact) {
   EXPECT_EQ(saved.colour.values(), loaded.colour.values());
   EXPECT_EQ(saved.name, loaded.name);
   EXPECT_EQ(saved.source, loaded.source);
-  EXPECT_EQ(saved.chart, loaded.chart);
+  EXPECT_EQ(saved.diagrams.chart, loaded.diagrams.chart);
+  EXPECT_EQ(saved.interpolation, loaded.interpolation);
   save_stack(path("b.exr"), loaded);
   EXPECT_EQ(read_bytes(path("a.exr")), read_bytes(path("b.exr")));
 }
