@@ -20,6 +20,12 @@ namespace gonio {
 ///
 /// At grazing incidence m(pi) is 0 and a infinite: theta_i is clamped to `largest_theta_i`, beyond which
 /// the chart is that of this angle (still a bijection onto the whole hemisphere).
+///
+/// Maximum errors, epsilon being that of T, for T inputs taken as exact: direction() 8 epsilon in each
+/// component and in length, its Jacobian 16 epsilon relative; disk() then direction() comes back within
+/// 8 epsilon / cos theta_i: what the sum of nearly opposite vectors holds of h.
+///
+/// Thread safety: immutable; concurrent use is safe.
 template <class T>
 class HalfVectorChart {
  public:
@@ -41,7 +47,7 @@ class HalfVectorChart {
     T jacobian;   ///< as in Direction
   };
 
-  /// @param at r in [0, 1]. Errors: see the class Point's inverse, disk().
+  /// The outgoing direction of a point of the disk. @param at r in [0, 1].
   Direction direction(Polar<T> at) const noexcept {
     const T c = std::cos(at.phi), s = std::sin(at.phi);
     const Meridian h = meridian(c);

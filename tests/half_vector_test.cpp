@@ -80,7 +80,7 @@ TEST(HalfVector, JacobianIsTheAreaRatio) {
       const Wide area = std::sqrt(dot(n, n)) / (2 * r);
       const Wide found = chart.direction({r, phi}).jacobian;
       ASSERT_NEAR(static_cast<double>(found / area), 1, 1e-6) << theta_i << ' ' << static_cast<double>(r) << ' ' << static_cast<double>(phi);
-      ASSERT_NEAR(static_cast<double>(chart.disk(at(0, 0)).jacobian / found), 1, 1e-12);
+      ASSERT_NEAR(static_cast<double>(chart.disk(at(0, 0)).jacobian / found), 1, 1e-9);
     }
   }
 }
@@ -101,7 +101,7 @@ TEST(HalfVector, CoversTheHemisphereOnce) {
 }
 
 struct Errors {
-  Wide direction = 0, round_trip = 0, jacobian = 0, length = 0, back = 0;
+  Wide direction = 0, round_trip = 0, jacobian = 0, length = 0;
 };
 
 /// Of T against long double on the same T inputs; the chart's own angle is that of T too.
@@ -132,9 +132,8 @@ TEST(HalfVector, PrecisionAsStated) {
     for (const auto& [e, epsilon] : {std::pair(errors<float>(theta_i), 0x1p-23L), std::pair(errors<double>(theta_i), 0x1p-52L)}) {
       EXPECT_LE(e.direction, 8 * epsilon) << theta_i;
       EXPECT_LE(e.length, 8 * epsilon) << theta_i;
-      EXPECT_LE(e.jacobian, 32 * epsilon) << theta_i;
-      EXPECT_LE(e.round_trip, 32 * epsilon) << theta_i;
-      std::printf("%g: dir %g len %g jac %g rt %g\n", theta_i, double(e.direction / epsilon), double(e.length / epsilon), double(e.jacobian / epsilon), double(e.round_trip / epsilon));
+      EXPECT_LE(e.jacobian, 16 * epsilon) << theta_i;
+      EXPECT_LE(e.round_trip, 8 * epsilon / std::cos(theta_i)) << theta_i;
     }
   }
 }

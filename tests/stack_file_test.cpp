@@ -302,8 +302,8 @@ using Parts = std::vector<RawPart>;
 const Fault faults[] = {
     {"Version", [](Parts& p) { p[0].header.insert("gonio:format", Imf::IntAttribute(2)); },
      "attribute gonio:format: found 2, expected 1"},
-    {"Chart", [](Parts& p) { p[0].header.insert("gonio:chart", Imf::StringAttribute("half")); },
-     "attribute gonio:chart: found half, expected outgoing"},
+    {"Chart", [](Parts& p) { p[0].header.insert("gonio:chart", Imf::StringAttribute("sideways")); },
+     "attribute gonio:chart: found sideways, expected one of outgoing, half"},
     {"NoName", [](Parts& p) { p[0].header = without(p[0].header, "gonio:name"); },
      "attribute gonio:name"},
     {"NoLines", [](Parts& p) { p[1].header = without(p[1].header, "gonio:phi"); },
