@@ -70,7 +70,13 @@ class HalfVectorChart {
     const T across2 = h.x * h.x + h.y * h.y, across = std::sqrt(across2), length = std::sqrt(across2 + h.z * h.z);
     const T x = across2 / (length * (length + h.z));
     const auto [m, cos_max, sin_max, norm] = meridian(across > 0 ? h.x / across : T(1));
-    const T below = std::max(m < T(0.5) ? m - x : h.z / length - cos_max, T(0));
+    // m - x; in the outer half from wo.z, which holds the distance to the horizon to all its digits.
+    T below = m - x;
+    if (2 * x > m) {
+      const T sin2 = std::min(wo.z / norm, T(1)), cos_h = h.z / length;
+      const T sin_left = sin2 / std::sqrt(2 * (1 + std::sqrt((1 - sin2) * (1 + sin2))));
+      below = sin_left * (sin_max * cos_h + cos_max * (across / length)) / (cos_h + cos_max);
+    }
     const T q = std::min(scale_ * x / (below / m + scale_ * x), T(1));
     const T d = scale_ * (1 - q) + q / m;
     return {{std::sqrt(q), across > 0 ? std::atan2(h.y, h.x) : T(0)}, 2 * length * scale_ / (d * d)};
