@@ -69,7 +69,6 @@ TEST(DiskImageFile, RefusesWithReason) {
   grid.r = {0, 1};
   grid.density = {1, 1, 1, 1};
   stack.diagrams.diagrams = {grid, grid};
-  stack.chart = "outgoing";
   save_stack(folder / "stack.exr", stack);
   EXPECT_NE(message(folder / "stack.exr").find("a stack file"), std::string::npos);
 }

@@ -113,11 +113,12 @@ std::string range(const std::vector<DiagramGrid>& diagrams, const Size& size) {
 void print_stack(const std::string& path) {
   const StackFile file = load_stack(path);
   const std::vector<DiagramGrid>& diagrams = file.diagrams.diagrams;
-  const Stack<float> stack(file.diagrams, Interpolation::displacement);
+  const Stack<float> stack(file.diagrams, file.interpolation);
   print("name", file.name);
   print("format", "stack of diagrams, version " + std::to_string(stack_file_version));
   print("source", file.source);
-  print("chart", file.chart);
+  print("chart", to_string(file.diagrams.chart));
+  print("between", to_string(file.interpolation));
   print("size",
         std::to_string(diagrams.size()) + " diagrams of " +
             range(diagrams, [](const DiagramGrid& d) { return d.phi.size(); }) + " meridians x " +
@@ -133,7 +134,7 @@ void print_stack(const std::string& path) {
   print("colour", std::to_string(file.colour.side()) + " x " +
                       std::to_string(file.colour.side() / 2) + " cells per diagram, " +
                       bytes_text(file.colour.bytes()) + " in memory");
-  const Sampler sampler(file.diagrams, file.colour);
+  const Sampler sampler(file.diagrams, file.colour, file.interpolation);
   print_albedo([&](float theta_i) {
     constexpr int side = 128;
     const glm::vec3 wi(std::sin(theta_i), 0, std::cos(theta_i));

@@ -72,6 +72,19 @@ Value attribute(const std::string& file, const Imf::Header& header, const char* 
   return found->value();
 }
 
+/// One of the values that have a name; `absent` for files that are older than the attribute.
+template <class Value, std::size_t N>
+Value choice(const std::string& file, const Imf::Header& header, const char* name, const Value (&known)[N], Value absent) {
+  if (header.find(name) == header.end()) return absent;
+  const std::string found = attribute<Imf::StringAttribute, std::string>(file, header, name);
+  std::string expected;
+  for (const Value value : known) {
+    if (found == to_string(value)) return value;
+    expected += (expected.empty() ? "" : ", ") + std::string(to_string(value));
+  }
+  fail(file, std::string("attribute ") + name, found, "one of " + expected);
+}
+
 std::vector<float> read_pixels(const std::string& file, Imf::MultiPartInputFile& input, int k, int width,
                                int height, const std::vector<std::string>& channels) {
   const Imf::Header& header = input.header(k);
@@ -113,8 +126,8 @@ StackFile load(const std::string& file) {
          std::to_string(stack_file_version) + " (a stack file of this library)");
   result.name = attribute<Imf::StringAttribute, std::string>(file, first, "gonio:name");
   result.source = attribute<Imf::StringAttribute, std::string>(file, first, "gonio:source");
-  result.chart = attribute<Imf::StringAttribute, std::string>(file, first, "gonio:chart");
-  if (result.chart != "outgoing") fail(file, "attribute gonio:chart", result.chart, "outgoing");
+  result.diagrams.chart = choice(file, first, "gonio:chart", charts, Chart::outgoing);
+  result.interpolation = choice(file, first, "gonio:interpolation", interpolations, Interpolation::displacement);
 
   for (int k = 0; k < input.parts(); ++k) {
     const Imf::Header& header = input.header(k);
@@ -176,8 +189,9 @@ void save_stack(const std::filesystem::path& path, const StackFile& file) {
   first.insert("gonio:version", Imf::StringAttribute(GONIO_VERSION));
   first.insert("gonio:name", Imf::StringAttribute(file.name));
   first.insert("gonio:source", Imf::StringAttribute(file.source));
-  first.insert("gonio:chart", Imf::StringAttribute(file.chart));
-  first.insert("gonio:units", Imf::StringAttribute("pdf per solid angle in 1/sr; angles in radians; r = sqrt(1 - cos theta)"));
+  first.insert("gonio:chart", Imf::StringAttribute(to_string(file.diagrams.chart)));
+  first.insert("gonio:interpolation", Imf::StringAttribute(to_string(file.interpolation)));
+  first.insert("gonio:units", Imf::StringAttribute("pdf per 2 r dr dphi in 1/sr; angles in radians"));
   first.insert("gonio:layout", Imf::StringAttribute("one part per incident angle: columns r, rows phi in 0..pi, mirrored"));
 
   // To memory first: OpenEXR finishes its files in destructors, where a full disk goes unnoticed.
@@ -209,7 +223,7 @@ StackFile load_stack(const std::filesystem::path& path) {
   try {
     StackFile file = load(path.string());
     // What cannot be sampled is refused here, with the name of the file.
-    const Stack<float> usable(file.diagrams, Interpolation::displacement);
+    const Stack<float> usable(file.diagrams, file.interpolation);
     return file;
   } catch (const Error& e) {
     const std::string what = e.what();
@@ -231,7 +245,7 @@ bool is_exr(const std::filesystem::path& path) {
 Sampler load_sampler(const std::filesystem::path& path) {
   StackFile file = load_stack(path);
   if (file.colour.empty()) fail(path.string(), "part colour", "none", "one (a self-contained stack)");
-  return Sampler(file.diagrams, std::move(file.colour));
+  return Sampler(file.diagrams, std::move(file.colour), file.interpolation);
 }
 
 }  // namespace gonio

@@ -20,7 +20,7 @@ struct CallTimes {
 
 /// One way of sampling one material, measured.
 struct MethodReport {
-  std::string id;          ///< uniform, cosine, nearest, mixture, displacement, displacement_small, rgl, lobes1 ... 3
+  std::string id;          ///< uniform, cosine, nearest, mixture, displacement, blend, displacement_small, rgl, lobes1 ... 3
   std::string chart;       ///< what the method's density is tabulated over; "none" if nothing is tabulated
   nlohmann::json params;   ///< what made it
   std::size_t bytes = 0;   ///< all memory that the sampler holds, the source table apart

@@ -151,13 +151,13 @@ void write_report(const std::filesystem::path& directory, const Report& report) 
 
 void print_summary(std::ostream& out, const Report& report) {
   const auto cell = [&](const std::string& text, int width) -> std::ostream& { return out << std::setw(width) << text; };
-  out << std::left << std::setw(28) << "material" << std::setw(14) << "method" << std::right;
+  out << std::left << std::setw(28) << "material" << std::setw(20) << "method" << std::setw(10) << "chart" << std::right;
   for (const char* head : {"KiB", "sample ns", "pdf ns"}) cell(head, 11);
   for (const double angle : report_angles) cell("rv " + number(angle) + "°", 10);  // the degree sign is two bytes
   out << '\n';
   for (const MaterialReport& material : report.materials) {
     for (const MethodReport& m : material.methods) {
-      out << std::left << std::setw(28) << material.name << std::setw(14) << m.id << std::right;
+      out << std::left << std::setw(28) << material.name << std::setw(20) << m.id << std::setw(10) << m.chart << std::right;
       cell(number(static_cast<double>(m.bytes) / 1024), 11);
       cell(number(m.ns.sample), 11);
       cell(number(m.ns.pdf), 11);
