@@ -45,26 +45,30 @@ struct Attempt {
 class Fitter {
  public:
   Fitter(std::vector<FitSample> samples, const FitOptions& options)
-      : samples_(std::move(samples)), options_(options), random_(options.seed) {}
+      : samples_(std::move(samples)), options_(options), random_(options.seed) {
+    for (size_t i = 0; i < samples_.size(); i += sparse_step) sparse_.push_back(samples_[i]);
+  }
 
   Fit stage(const LobeModel& form, const LobeModel* previous) {
     std::vector<Attempt> attempts = best_candidates(form, previous);
+    const ParameterLayout layout(form, options_.separate_channels);
+    // From a start to the neighbourhood of a minimum few pairs do.
+    parallel_for(attempts.size(), [&](size_t i) { refine(layout, sparse_, attempts[i]); });
     if (previous) {
-      // The smaller model with a lobe of no amplitude costs exactly the same, so that no stage can
-      // lose.
+      // The smaller model with a lobe of no amplitude costs exactly the same, and is refined with
+      // all pairs alone, which never raises their cost: so no stage can lose.
       Attempt same;
       same.model = form;
       std::copy(previous->lobes.begin(), previous->lobes.end(), same.model.lobes.begin());
       Lobe& added = same.model.lobes.back();
       added.shape = previous->lobes.back().shape;
       if (added.kind != previous->lobes.back().kind) added.shape = Lobe::initial(added.kind).shape;
-      if (added.fresnel == Fresnel::schlick) {
-        added.color = {};
-        attempts.push_back(same);
-      }
+      added.color = {};
+      if (added.fresnel == Fresnel::conductor) added.color[0] = glm::dvec3(1);  // eta of vacuum
+      same.initial_cost = cost(layout, same.model);
+      attempts.push_back(same);
     }
-    const ParameterLayout layout(form, options_.separate_channels);
-    parallel_for(attempts.size(), [&](size_t i) { refine(layout, attempts[i]); });
+    parallel_for(attempts.size(), [&](size_t i) { refine(layout, samples_, attempts[i]); });
     return summarise(layout, attempts);
   }
 
@@ -137,19 +141,24 @@ class Fitter {
     double sum = 0, residual[3];
     for (const FitSample& sample : samples_) {
       SampleResidual(sample, layout, options_.compression).Evaluate(parameters, residual, nullptr);
-      sum += residual[0] * residual[0] + residual[1] * residual[1] + residual[2] * residual[2];
+      const double square =
+          residual[0] * residual[0] + residual[1] * residual[1] + residual[2] * residual[2];
+      const double width = options_.robust_width * sample.weight;
+      sum += width > 0 && square > width * width ? 2 * width * std::sqrt(square) - width * width
+                                                 : square;
     }
     return sum / 2;
   }
 
-  void refine(const ParameterLayout& layout, Attempt& attempt) const {
+  void refine(const ParameterLayout& layout, const std::vector<FitSample>& samples,
+              Attempt& attempt) const {
     std::vector<double> x = layout.pack(attempt.model);
     ceres::Problem::Options problem_options;
     problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
     ceres::Problem problem(problem_options);
     // Residuals carry the square root of a share; the width is meant for one unweighted residual.
     std::vector<std::unique_ptr<ceres::LossFunction>> losses;
-    for (const FitSample& sample : samples_) {
+    for (const FitSample& sample : samples) {
       ceres::LossFunction* loss = nullptr;
       if (options_.robust_width > 0 && sample.weight > 0) {
         losses.push_back(std::make_unique<ceres::HuberLoss>(options_.robust_width * sample.weight));
@@ -173,9 +182,8 @@ class Fitter {
     ceres::Solve(solver, &problem, &summary);
     if (!summary.IsSolutionUsable()) return;
     layout.unpack(x.data(), attempt.model);
-    attempt.initial_cost = summary.initial_cost;
     attempt.cost = summary.final_cost;
-    attempt.iterations = static_cast<int>(summary.iterations.size());
+    attempt.iterations += static_cast<int>(summary.iterations.size());
     attempt.termination = summary.termination_type == ceres::CONVERGENCE
                               ? Termination::converged
                               : Termination::iteration_limit;
@@ -235,7 +243,10 @@ class Fitter {
     return fit;
   }
 
-  std::vector<FitSample> samples_;
+  // Coprime to the numbers of theta_d and phi_d, so that the sparse pairs fall on all of them.
+  static constexpr size_t sparse_step = 7;
+
+  std::vector<FitSample> samples_, sparse_;
   FitOptions options_;
   std::mt19937 random_;
 };

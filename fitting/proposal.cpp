@@ -83,6 +83,24 @@ class Divergence {
   double cosine_share_;
 };
 
+// Sweeps of as many derivatives as there are parameters, for up to three lobes.
+template <int Stride>
+ceres::CostFunction* swept(const Quadrature& quadrature, size_t lobes, double cosine_share) {
+  auto* cost = new ceres::DynamicAutoDiffCostFunction<Divergence, Stride>(
+      new Divergence(quadrature, lobes, cosine_share));
+  cost->AddParameterBlock(static_cast<int>(1 + lobes));
+  cost->AddParameterBlock(static_cast<int>(shape_size * lobes));
+  cost->SetNumResiduals(static_cast<int>(quadrature.points.size()));
+  return cost;
+}
+
+ceres::CostFunction* divergence_cost(const Quadrature& quadrature, size_t lobes,
+                                     double cosine_share) {
+  if (lobes == 1) return swept<8>(quadrature, lobes, cosine_share);
+  if (lobes == 2) return swept<12>(quadrature, lobes, cosine_share);
+  return swept<16>(quadrature, lobes, cosine_share);
+}
+
 // About the width of a GGX with the same peak of its slope distribution.
 double ggx_width(LobeKind kind, double first) {
   const bool exponent = std::string_view(lobe_info(kind).shape[0].name) == "exponent";
@@ -231,12 +249,7 @@ Proposal refine_proposal(const Quadrature& quadrature, const Proposal& start, bo
     }
     shape.push_back(s.shear);
   }
-  // 16 covers all parameters of three lobes in one sweep.
-  auto* cost = new ceres::DynamicAutoDiffCostFunction<Divergence, 16>(
-      new Divergence(quadrature, lobes, cosine_share));
-  cost->AddParameterBlock(static_cast<int>(root.size()));
-  cost->AddParameterBlock(static_cast<int>(shape.size()));
-  cost->SetNumResiduals(static_cast<int>(quadrature.points.size()));
+  ceres::CostFunction* cost = divergence_cost(quadrature, lobes, cosine_share);
   ceres::Problem problem;
   problem.AddResidualBlock(cost, nullptr, root.data(), shape.data());
   for (int i = 0; i < static_cast<int>(shape.size()); ++i) {
