@@ -45,18 +45,14 @@ struct Attempt {
 class Fitter {
  public:
   Fitter(std::vector<FitSample> samples, const FitOptions& options)
-      : samples_(std::move(samples)), options_(options), random_(options.seed) {
-    for (size_t i = 0; i < samples_.size(); i += sparse_step) sparse_.push_back(samples_[i]);
-  }
+      : samples_(std::move(samples)), options_(options), random_(options.seed) {}
 
   Fit stage(const LobeModel& form, const LobeModel* previous) {
     std::vector<Attempt> attempts = best_candidates(form, previous);
     const ParameterLayout layout(form, options_.separate_channels);
-    // From a start to the neighbourhood of a minimum few pairs do.
-    parallel_for(attempts.size(), [&](size_t i) { refine(layout, sparse_, attempts[i]); });
     if (previous) {
-      // The smaller model with a lobe of no amplitude costs exactly the same, and is refined with
-      // all pairs alone, which never raises their cost: so no stage can lose.
+      // The smaller model with a lobe of no amplitude costs exactly the same, and refining
+      // never raises a cost: so no stage can lose.
       Attempt same;
       same.model = form;
       std::copy(previous->lobes.begin(), previous->lobes.end(), same.model.lobes.begin());
@@ -68,7 +64,7 @@ class Fitter {
       same.initial_cost = cost(layout, same.model);
       attempts.push_back(same);
     }
-    parallel_for(attempts.size(), [&](size_t i) { refine(layout, samples_, attempts[i]); });
+    parallel_for(attempts.size(), [&](size_t i) { refine(layout, attempts[i]); });
     return summarise(layout, attempts);
   }
 
@@ -150,15 +146,14 @@ class Fitter {
     return sum / 2;
   }
 
-  void refine(const ParameterLayout& layout, const std::vector<FitSample>& samples,
-              Attempt& attempt) const {
+  void refine(const ParameterLayout& layout, Attempt& attempt) const {
     std::vector<double> x = layout.pack(attempt.model);
     ceres::Problem::Options problem_options;
     problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
     ceres::Problem problem(problem_options);
     // Residuals carry the square root of a share; the width is meant for one unweighted residual.
     std::vector<std::unique_ptr<ceres::LossFunction>> losses;
-    for (const FitSample& sample : samples) {
+    for (const FitSample& sample : samples_) {
       ceres::LossFunction* loss = nullptr;
       if (options_.robust_width > 0 && sample.weight > 0) {
         losses.push_back(std::make_unique<ceres::HuberLoss>(options_.robust_width * sample.weight));
@@ -183,7 +178,7 @@ class Fitter {
     if (!summary.IsSolutionUsable()) return;
     layout.unpack(x.data(), attempt.model);
     attempt.cost = summary.final_cost;
-    attempt.iterations += static_cast<int>(summary.iterations.size());
+    attempt.iterations = static_cast<int>(summary.iterations.size());
     attempt.termination = summary.termination_type == ceres::CONVERGENCE
                               ? Termination::converged
                               : Termination::iteration_limit;
@@ -243,10 +238,7 @@ class Fitter {
     return fit;
   }
 
-  // Coprime to the numbers of theta_d and phi_d, so that the sparse pairs fall on all of them.
-  static constexpr size_t sparse_step = 7;
-
-  std::vector<FitSample> samples_, sparse_;
+  std::vector<FitSample> samples_;
   FitOptions options_;
   std::mt19937 random_;
 };
