@@ -29,11 +29,11 @@ Vec3<T> polar_to_direction(Polar<T> p) noexcept {
 }
 
 /// The inverse of polar_to_direction(). @param w a unit vector with w.z >= 0.
-/// r^2 is taken as sin^2 / (1 + cos): 1 - w.z would lose all digits next to the pole. r has a relative
-/// error of at most 4 ulp for a `w` that is a unit vector to rounding.
+/// r^2 is 1 - cos near the horizon, where that is exact, and sin^2 / (1 + cos) near the pole, where it
+/// would lose all digits. r has a relative error of at most 4 ulp for a `w` that is a unit vector to rounding.
 template <class T>
 Polar<T> direction_to_polar(const Vec3<T>& w) noexcept {
-  const T r2 = (w.x * w.x + w.y * w.y) / (1 + w.z);
+  const T r2 = w.z < T(0.5) ? 1 - w.z : (w.x * w.x + w.y * w.y) / (1 + w.z);
   return {std::min(std::sqrt(r2), T(1)), std::atan2(w.y, w.x)};
 }
 

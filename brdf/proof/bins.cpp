@@ -138,7 +138,7 @@ Bins Bins::adapted(const Density& density, int n_phi, int n_r) {
 
 std::size_t Bins::index(const glm::vec3& w) const noexcept {
   if (!(w.z >= 0)) return size();
-  const Polar<double> p = direction_to_polar(glm::dvec3(w));
+  const Polar<float> p = direction_to_polar(w);  // w has no more digits
   const auto cell = [](const std::vector<double>& edges, double x) {
     const auto above = std::upper_bound(edges.begin() + 1, edges.end() - 1, x);
     return static_cast<std::size_t>(above - edges.begin()) - 1;
