@@ -47,7 +47,7 @@ class Sampler {
   std::optional<BsdfSample> sample(const glm::vec3& wi, const glm::vec2& u) const noexcept;
 
   /// The density with which sample() draws wo [1/sr]. Differs from BsdfSample::pdf by rounding only
-  /// (relative 2e-3 at most, besides 5e-4 of its peak).
+  /// (relative 2e-3 at most, besides 1e-4 of its peak).
   float pdf(const glm::vec3& wi, const glm::vec3& wo) const noexcept;
 
   /// f_r(wi, wo) per RGB channel [1/sr], without the cosine.

@@ -45,7 +45,7 @@ class Displacement {
         at.phi, std::min(u0, u1), std::max(u0, u1), pi<T> * std::numeric_limits<T>::epsilon());
     Meridians m{d0_.meridian_at(u), d1_.meridian_at(u)};
     const T phi_error = at.phi - (w0_ * m.first.phi + w1_ * m.second.phi);
-    if (std::abs(phi_error) > gap) return std::nullopt;
+    if (in_gap(phi_error, slope_phi(m.first, m.second))) return std::nullopt;
     if (std::abs(phi_error) > tolerance) {
       // Beside a meridian without mass u has too few digits for phi: the rest of the way goes without it.
       const T s0 = 1 / m.first.mass, s1 = 1 / m.second.mass, step = phi_error / (w0_ * s0 + w1_ * s1);
@@ -63,9 +63,11 @@ class Displacement {
         },
         at.r, std::min(q0, q1), std::max(q0, q1), std::numeric_limits<T>::epsilon());
     const T v = std::max(q * q, smallest_v);
-    auto p0 = d0_.parallel_at(m.first, v), p1 = d1_.parallel_at(m.second, v);
+    // The map is infinitely steep at the horizon itself: seen from the float before it.
+    const T before = std::min(v, 1 - std::numeric_limits<T>::epsilon() / 2);
+    auto p0 = d0_.parallel_at(m.first, before), p1 = d1_.parallel_at(m.second, before);
     const T r_error = at.r - (w0_ * p0.r + w1_ * p1.r);
-    if (std::abs(r_error) > gap) return std::nullopt;
+    if (in_gap(r_error, slope_r2(m, p0, p1) / 2)) return std::nullopt;
     if (std::abs(r_error) > tolerance) {
       // The same for v and r, where the density falls to 0: at the horizon of every reflection.
       const T s0 = m.first.mass / (p0.pdf * p0.r), s1 = m.second.mass / (p1.pdf * p1.r);
@@ -87,10 +89,14 @@ class Displacement {
 
   // Keeps r positive, where the quotient of radii in the density is 0/0 otherwise.
   static constexpr T smallest_v = std::numeric_limits<T>::epsilon() * std::numeric_limits<T>::epsilon();
-  // A root that misses its target by more has met a jump of the map, not rounding.
-  static constexpr T gap = 4096 * std::numeric_limits<T>::epsilon();
   // A root is as good as phi and r are held.
   static constexpr T tolerance = 4 * std::numeric_limits<T>::epsilon();
+
+  /// Whether a root misses its target by more than the rounding of u or v explains: the map jumps there.
+  static bool in_gap(T error, T slope) noexcept {
+    constexpr T epsilon = std::numeric_limits<T>::epsilon();
+    return std::abs(error) > std::max(4096 * epsilon, 4 * epsilon * slope);
+  }
 
   /// dphi_alpha/du; 0 stands for an infinite slope (a meridian without mass).
   T slope_phi(const Meridian& a, const Meridian& b) const noexcept {

@@ -71,7 +71,7 @@ class Stack {
   DirectionSample<T> sample(T theta_i, T u, T v) const noexcept;
 
   /// The pdf of `wo` [1/sr]; integrates to 1 over the hemisphere; 0 for wo.z < 0. In float, of a draw,
-  /// within 2e-3 of the returned pdf, relative, besides 5e-4 of the largest density. For `displacement`
+  /// within 2e-3 of the returned pdf, relative, besides 1e-4 of the largest density. For `displacement`
   /// between diagrams this inverts the map (at most 2 max_root_steps evaluations, typically 8).
   /// For `blend` it is one bilinear look-up of both diagrams.
   T pdf(T theta_i, const Vec3<T>& wo) const noexcept;
@@ -80,8 +80,8 @@ class Stack {
   /// mixture has two pre-images: the one that floats hold better is returned.
   ///
   /// In float, where the density is at least 1e-6 of its largest value: sample() then invert() comes
-  /// back to (u, v) within 1e-4 (not for mixtures); invert() then sample() to `wo` within 2e-3 in each
-  /// component (mixtures: 1e-2), the worst being directions where the density falls to 0.
+  /// back to (u, v) within 1e-4 (not for mixtures); invert() then sample() to `wo` within 2e-4 in each
+  /// component (mixtures: 1e-2), or as near as the floats u and v let it come where the map is steep.
   std::optional<SquareInverse<T>> invert(T theta_i, const Vec3<T>& wo) const noexcept;
 
   Interpolation interpolation() const noexcept { return interpolation_; }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <set>
@@ -19,11 +20,8 @@ namespace {
 // shared out over about as many.
 constexpr int runs = 1000;
 
-#ifdef GONIO_SLOW_TESTS
-constexpr std::uint64_t draws = 1000000;
-#else
-constexpr std::uint64_t draws = 200000;
-#endif
+// Of each run; the tests labelled slow do ten times as many.
+const std::uint64_t draws = std::getenv("GONIO_DRAWS") ? std::strtoull(std::getenv("GONIO_DRAWS"), nullptr, 10) : 100000;
 
 const double angles[] = {
     0, 1e-6, 0.2, 0.225, 0.45 - 1e-6, 0.45, 0.45 + 1e-6, 0.7, 0.95, 1.3, 89.9 * pi<double> / 180, pi<double> / 2};
@@ -48,12 +46,9 @@ struct Known {
   const char* why;
 };
 const Known known[] = {
-    {"decades", {"where_zero", "pdf", "rotation", "round_trip_square", "round_trip_direction"},
-     "twelve decades in neighbouring cells: r and phi change faster with (u, v) than floats can follow"},
-    {"zero-sector", {"where_zero", "round_trip_square", "round_trip_direction"},
-     "the inverse of displacement leaves out the foot of the sector, where the map is steeper than its gap allows"},
-    {"zero-meridian", {"round_trip_direction"}, "the map is torn there: rounding of u chooses a side"},
-    {"spike", {"round_trip_direction"}, "of the floor, which has 1e-4 of the density: 2.3e-3 in the worst case"},
+    {"decades", {"pdf", "rotation", "round_trip_direction"}, "twelve decades in neighbouring cells: phi changes faster with u than floats can follow"},
+    {"zero-sector", {"where_zero", "pdf", "rotation", "round_trip_square", "round_trip_direction"},
+     "on the edges of the sector the conditional is 0/0: displacement finds no way back from draws on them"},
 };
 
 bool is_known(const std::string& entry, const std::string& check) {

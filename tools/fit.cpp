@@ -1,6 +1,6 @@
-#include <gonio/brdf/atomic_file.h>
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/fitting/fit_json.h>
+#include <gonio/mapping/atomic_file.h>
 #include <gonio/mapping/error.h>
 #include <gonio/tools/fit.h>
 #include <gonio/tools/input.h>

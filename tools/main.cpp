@@ -2,7 +2,7 @@
 #include <gonio/tools/convert.h>
 #include <gonio/tools/fit.h>
 #include <gonio/tools/info.h>
-#include <gonio/tools/light.h>
+#include <gonio/tools/light/light.h>
 #include <gonio/tools/report/report.h>
 #include <gonio/tools/stability/stability.h>
 #include <gonio/tools/synth.h>

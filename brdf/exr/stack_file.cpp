@@ -23,8 +23,8 @@
 #include <map>
 #include <vector>
 
-#include <gonio/brdf/atomic_file.h>
 #include <gonio/brdf/bytes.h>
+#include <gonio/mapping/atomic_file.h>
 #include <gonio/mapping/error.h>
 
 namespace gonio {

@@ -134,11 +134,6 @@ class Run {
     }
   }
 
-  /// How far two pdfs are apart, relative; less where both are within pdf_floor of 0.
-  double pdf_difference(double a, double b) const {
-    return std::abs(a - b) / (std::max(a, b) + o_.pdf_floor / o_.pdf_bound * peak_);
-  }
-
   bool has_digits(double pdf) const { return pdf >= o_.density_floor * peak_; }
 
   double pdf(const glm::vec3& wo) const { return s_.pdf(wi_, wo); }
@@ -205,16 +200,77 @@ class Run {
     }
   }
 
+  /// What rounding of (u, v) makes of a draw: the draw and those of the numbers next to (u, v).
+  std::vector<BsdfSample> rounded(const glm::vec2& u, const BsdfSample& s) const {
+    constexpr float step = 0x1p-22f;
+    std::vector<BsdfSample> draws{s};
+    for (const glm::vec2& shift : {glm::vec2(step, 0), glm::vec2(-step, 0), glm::vec2(0, step), glm::vec2(0, -step)}) {
+      const glm::vec2 next(std::clamp(u.x + shift.x, 0.0f, 1 - 0x1p-24f), std::clamp(u.y + shift.y, 0.0f, 1 - 0x1p-24f));
+      if (const auto d = s_.sample(wi_, next)) draws.push_back(*d);
+    }
+    return draws;
+  }
+
+  /// |wo of `s` - w|, less what rounding of (u, v) makes of it.
+  double direction_error(const glm::vec2& u, const BsdfSample& s, const glm::vec3& w) const {
+    const double error = largest_component(s.wo, w);
+    if (error <= o_.direction_bound) return error;
+    double spread = 0;
+    for (const BsdfSample& d : rounded(u, s)) spread = std::max(spread, largest_component(s.wo, d.wo));
+    return std::max(error - spread, 0.0);
+  }
+
+  struct Range {
+    double least, most;
+    void see(double x) { least = std::min(least, x), most = std::max(most, x); }
+  };
+
+  /// How far two pdfs are apart, in units of what is allowed.
+  double pdf_difference(double a, double b) const {
+    return std::abs(a - b) / (o_.pdf_bound * std::max(a, b) + o_.pdf_floor * peak_);
+  }
+  /// The same of two ranges; 0 where they meet.
+  double apart(const Range& a, const Range& b) const {
+    return a.most < b.least ? pdf_difference(a.most, b.least) : b.most < a.least ? pdf_difference(b.most, a.least) : 0;
+  }
+
+  /// What rounding of wo makes of pdf(): a turn and a change of height by some 2^-22.
+  Range rounded_pdf(const glm::vec3& wi, const glm::vec3& wo) const {
+    constexpr float step = 0x1p-22f;
+    const double here = s_.pdf(wi, wo);
+    Range range{here, here};
+    for (const glm::vec3& w : {turned(wo, step), turned(wo, -step), glm::vec3(wo.x, wo.y, std::min(wo.z + step, 1.0f)),
+                               glm::vec3(wo.x, wo.y, std::max(wo.z - step, 0x1p-30f))})
+      range.see(s_.pdf(wi, w));
+    return range;
+  }
+
+  /// How far pdf() of a draw is from the pdf that came with it, less rounding of (u, v) and wo.
+  double pdf_error(const Point& p) const {
+    const double asked = pdf(p.s.wo);
+    const double error = pdf_difference(p.s.pdf, asked);
+    if (error <= 1) return error;
+    Range returned{p.s.pdf, p.s.pdf};
+    for (const BsdfSample& d : rounded(p.u, p.s)) returned.see(d.pdf);
+    return apart(returned, rounded_pdf(wi_, p.s.wo));
+  }
+
+  /// How far the pdfs of one direction in two frames are apart, less rounding of wo.
+  double frame_error(const glm::vec3& wo, const glm::vec3& other_wi, const glm::vec3& other_wo) const {
+    const double error = pdf_difference(pdf(wo), s_.pdf(other_wi, other_wo));
+    return error <= 1 ? error : apart(rounded_pdf(wi_, wo), rounded_pdf(other_wi, other_wo));
+  }
+
   void per_point() {
     Worst pdf_error, weight_error;
     for (const Point& p : points_) {
       if (!has_digits(p.s.pdf)) continue;
-      pdf_error.see(pdf_difference(p.s.pdf, pdf(p.s.wo)), p.s.wo);
+      pdf_error.see(this->pdf_error(p), p.s.wo);
       if (!s_.f_r) continue;
       const glm::vec3 expected = s_.f_r(wi_, p.s.wo) * (p.s.wo.z / p.s.pdf);
       for (int c = 0; c < 3; ++c) weight_error.see(relative(p.s.weight[c], expected[c]), p.s.wo);
     }
-    at_most("pdf", pdf_error.value, o_.pdf_bound, pdf_error.where);
+    at_most("pdf", pdf_error.value, 1, "in units of the pdf bound, " + pdf_error.where);
     if (s_.f_r) at_most("weight", weight_error.value, o_.weight_bound, weight_error.where);
   }
 
@@ -243,7 +299,7 @@ class Run {
       if (!u)
         direction.see(infinity, w);
       else if (s)  // else rounding met a line without density
-        direction.see(largest_component(s->wo, w), w);
+        direction.see(direction_error(*u, *s, w), w);
     };
     for (const Point& p : points_) {
       if (!has_digits(p.s.pdf)) continue;
@@ -265,12 +321,11 @@ class Run {
     const bool has_azimuth = std::sin(theta_i_) > 1e-3;
     for (const Point& p : points_) {
       if (!has_digits(p.s.pdf)) continue;
-      const double here = pdf(p.s.wo);
-      if (o_.symmetric) mirror.see(pdf_difference(here, pdf({p.s.wo.x, -p.s.wo.y, p.s.wo.z})) / o_.pdf_bound, p.s.wo);
+      if (o_.symmetric) mirror.see(frame_error(p.s.wo, wi_, {p.s.wo.x, -p.s.wo.y, p.s.wo.z}), p.s.wo);
       if (!has_azimuth) continue;
       for (const float angle : {0.7f, 2.4f, -1.3f}) {
         const glm::vec3 wi = turned(wi_, angle), wo = turned(p.s.wo, angle);
-        rotation.see(pdf_difference(here, s_.pdf(wi, wo)) / o_.pdf_bound, p.s.wo);
+        rotation.see(frame_error(p.s.wo, wi, wo), p.s.wo);
         if (!o_.turns || !o_.continuous) continue;  // rounding of theta_i may choose another diagram
         const auto s = s_.sample(wi, p.u);
         if (s) rotation.see(largest_component(s->wo, wo) / o_.direction_bound, p.s.wo);

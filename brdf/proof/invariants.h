@@ -34,15 +34,12 @@ struct InvariantOptions {
                              ///< or folds (see Coherence)
 
   double mass_bound = 1e-3;        ///< of |integral of the pdf + share of empty draws - 1|
-  /// Of the returned pdf against pdf(), relative, besides pdf_floor times the largest density: where the
-  /// density falls to 0, at the horizon above all, the numbers hold a direction to a few digits only.
-  double pdf_bound = 2e-3;
-  double pdf_floor = 5e-4;
+  /// Of the returned pdf against pdf(): relative, and in units of the largest density met, besides what
+  /// rounding of (u, v) and wo makes of them. (Next to the horizon v and r have few digits left.)
+  double pdf_bound = 2e-3, pdf_floor = 1e-4;
   double weight_bound = 1e-4;      ///< relative, of the weight against f_r cos theta_o / pdf
   double round_trip_bound = 1e-4;  ///< of (u, v), absolute
-  /// Of directions, absolute. Where the density falls to 0 at the horizon, or beside the pole of the
-  /// second diagram of a mixture, a v of 24 bits holds the direction to the square root of its rounding.
-  double direction_bound = 2e-3;
+  double direction_bound = 2e-4;   ///< of directions, absolute, besides rounding of (u, v)
   /// Weights and round trips are judged where the density is at least this share of the largest one
   /// met; elsewhere floats have no digits left.
   double density_floor = 1e-6;
@@ -61,7 +58,7 @@ struct InvariantOptions {
 /// - `moments`: two-sided p of the t-test of the draws' mean x, y and z against their quadrature, the
 ///   least of the three. (With so many draws Student's distribution is the normal one.)
 /// - `albedo`: the same of the mean weight (each channel) against the quadrature of f_r cos theta_o.
-/// - `pdf`: the returned pdf against pdf().
+/// - `pdf`: the returned pdf against pdf(), in units of the pdf bounds.
 /// - `weight`: the weight against f_r cos theta_o / pdf, relative.
 /// - `support`: share of the albedo at directions with f_r > 0 and pdf = 0; 0.
 /// - `round_trip_square`: |invert(sample(u, v)) - (u, v)|, the largest component.

@@ -21,7 +21,7 @@ namespace {
 LightReport measure_light(const std::filesystem::path& path) {
   Deviations ignored;
   const Luminaire light = load_any_light(path, {}, ignored);
-  return {path.stem().string(), path.filename().string(), light.format, flux(light.diagram), emission_quality(light.diagram)};
+  return {path.stem().string(), path.string(), light.format, std::filesystem::file_size(path), flux(light.diagram), emission_quality(light.diagram)};
 }
 
 }  // namespace

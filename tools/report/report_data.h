@@ -42,6 +42,7 @@ struct MaterialReport {
 /// The emission of one luminaire, sampled by every method.
 struct LightReport {
   std::string name, source, format;
+  std::uint64_t source_bytes = 0;
   double flux;  ///< [lm], by quadrature of the bilinear diagram
   std::vector<EmissionQuality> methods;
 };

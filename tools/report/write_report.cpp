@@ -9,7 +9,7 @@
 #include <ostream>
 #include <sstream>
 
-#include <gonio/brdf/atomic_file.h>
+#include <gonio/mapping/atomic_file.h>
 #include <gonio/mapping/concentric.h>
 #include <gonio/mapping/error.h>
 
@@ -130,8 +130,8 @@ nlohmann::json to_json(const Report& report) {
   for (const LightReport& light : report.lights) {
     nlohmann::json methods = nlohmann::json::array();
     for (const EmissionQuality& q : light.methods)
-      methods.push_back({{"method", q.method}, {"flux", q.flux}, {"relvar", q.relvar}, {"ns", q.nanoseconds_per_draw}});
-    lights.push_back({{"name", light.name}, {"source", light.source}, {"format", light.format}, {"flux", light.flux}, {"methods", std::move(methods)}});
+      methods.push_back({{"id", q.id}, {"flux", q.flux}, {"relvar", q.relvar}, {"ns", {{"sample", q.nanoseconds_per_draw}}}});
+    lights.push_back({{"name", light.name}, {"source", light.source}, {"format", light.format}, {"source_bytes", light.source_bytes}, {"flux", light.flux}, {"methods", std::move(methods)}});
   }
   return {{"gonio_version", GONIO_VERSION},
           {"machine", {{"cpu", report.machine.cpu}, {"compiler", report.machine.compiler}, {"threads", report.machine.threads}}},

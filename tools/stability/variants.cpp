@@ -362,7 +362,7 @@ std::vector<Variant> make_variants(const StabilityInput& input) {
   }
 
   v.push_back(of_map(p, "gonio-diagram", "Diagram: roots as quotients of positive sums", library_map));
-  v.push_back(of_direction(p, "gonio-polar", "polar_to_direction, direction_to_polar: sin^2 / (1 + cos) keeps the digits next to the pole",
+  v.push_back(of_direction(p, "gonio-polar", "polar_to_direction, direction_to_polar: 1 - cos as sin^2 / (1 + cos) keeps the digits next to the pole",
                            [](Polar<float> at) { return polar_to_direction(at); },
                            [](const glm::vec3& w) { return direction_to_polar(w); }));
   v.push_back(of_pdf("gonio-theta-weighted", map_bound, "the diagram's own pdf, and the table's value over it as weight",
