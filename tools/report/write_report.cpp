@@ -2,6 +2,7 @@
 
 #include <gonio/tools/report/compare_lobes.h>
 #include <gonio/tools/report/grid_figure.h>
+#include <gonio/tools/report/verdict.h>
 
 #include <algorithm>
 #include <cmath>
@@ -115,14 +116,21 @@ nlohmann::json to_json(const Report& report) {
                            {"stretch_p99", m.coherence.stretch_p99},
                            {"tears", m.coherence.tears + m.coherence.folds}}},
                          {"qmc_slope", m.convergence.qmc_slope},
-                         {"mc_slope", m.convergence.mc_slope}});
+                         {"mc_slope", m.convergence.mc_slope},
+                         {"qmc_error", m.convergence.qmc_error},
+                         {"mc_error", m.convergence.mc_error},
+                         {"mean_relvar", mean_relvar(m)},
+                         {"efficiency", efficiency(m)},
+                         {"curves", m.curves}});
     }
     materials.push_back({{"name", material.name},
                          {"source", material.source},
                          {"format", material.format},
                          {"source_bytes", material.source_bytes},
                          {"methods", std::move(methods)},
-                         {"fits", material.fits}});
+                         {"fits", material.fits},
+                         {"curves", material.curves},
+                         {"verdict", verdict(material)}});
     if (const auto comparison = compare_lobes(material))
       materials.back()["lobes_against_stack"] = to_json(*comparison);
   }
