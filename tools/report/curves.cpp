@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <sstream>
+#include <string>
 #include <vector>
 
 #include <gonio/brdf/proof/random.h>
@@ -95,29 +97,34 @@ nlohmann::json weights(const proof::Subject& subject, const glm::vec3& wi) {
   return {{"zero", rounded(static_cast<double>(zero) / (side * side))}, {"shares", std::move(shares)}};
 }
 
-/// Lines of constant u, then of constant v, as x0, y0, x1, y1 ... in thousandths of the disk's
-/// radius. A draw without a direction ends a line: its point is left out as a pair of nulls.
-nlohmann::json grid(const proof::Subject& subject, const glm::vec3& wi) {
+/// Lines of constant u, then of constant v, as the data of one SVG path in thousandths of the disk's
+/// radius; y points down, as SVG has it. A draw without a direction ends a line.
+std::string grid(const proof::Subject& subject, const glm::vec3& wi) {
   constexpr int lines = 16, steps = 32;
-  nlohmann::json all = nlohmann::json::array();
+  constexpr float last = 0x1.fffffep-1f;  // samplers take numbers below 1
+  std::ostringstream path;
   for (int direction = 0; direction < 2; ++direction)
     for (int line = 0; line <= lines; ++line) {
-      nlohmann::json points = nlohmann::json::array();
+      bool drawing = false;
+      long x = 0, y = 0;
       for (int step = 0; step <= steps; ++step) {
-        // Samplers take numbers below 1.
-        const float a = std::min(static_cast<float>(line) / lines, 0x1.fffffep-1f), b = std::min(static_cast<float>(step) / steps, 0x1.fffffep-1f);
+        const float a = std::min(static_cast<float>(line) / lines, last), b = std::min(static_cast<float>(step) / steps, last);
         const auto s = subject.sample(wi, direction == 0 ? glm::vec2(a, b) : glm::vec2(b, a));
         if (!s) {
-          points.insert(points.end(), {nullptr, nullptr});
+          drawing = false;
           continue;
         }
         const Polar<float> p = direction_to_polar(s->wo);
-        points.push_back(static_cast<int>(std::lround(1000 * p.r * std::cos(p.phi))));
-        points.push_back(static_cast<int>(std::lround(1000 * p.r * std::sin(p.phi))));
+        const long next_x = std::lround(1000 * p.r * std::cos(p.phi)), next_y = -std::lround(1000 * p.r * std::sin(p.phi));
+        if (drawing) {
+          path << 'l' << next_x - x << ',' << next_y - y;
+        } else {
+          path << 'M' << next_x << ',' << next_y;
+        }
+        x = next_x, y = next_y, drawing = true;
       }
-      all.push_back(std::move(points));
     }
-  return all;
+  return path.str();
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gonio/tools/report/compare_lobes.h>
 #include <gonio/tools/report/grid_figure.h>
 #include <gonio/tools/report/verdict.h>
+#include <gonio/tools/report/write_page.h>
 
 #include <algorithm>
 #include <cmath>
@@ -153,7 +154,9 @@ void write_report(const std::filesystem::path& directory, const Report& report) 
   if (failed) throw Error(directory.string() + ": cannot be made: " + failed.message() + ", expected a folder to write to");
   for (const MaterialReport& material : report.materials)
     if (material.stack) write_grid_figure(directory / (material.name + ".svg"), material.name, *material.stack);
-  write_stream_atomically(directory / "report.json", [&](std::ostream& out) { out << to_json(report).dump(1) << '\n'; });
+  const nlohmann::json json = to_json(report);
+  write_stream_atomically(directory / "report.json", [&](std::ostream& out) { out << json.dump(1) << '\n'; });
+  write_stream_atomically(directory / "report.html", [&](std::ostream& out) { write_page(out, json); });
   write_stream_atomically(directory / "report.md", [&](std::ostream& out) { write_markdown(out, report); });
 }
 
