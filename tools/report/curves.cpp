@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -97,34 +98,77 @@ nlohmann::json weights(const proof::Subject& subject, const glm::vec3& wi) {
   return {{"zero", rounded(static_cast<double>(zero) / (side * side))}, {"shares", std::move(shares)}};
 }
 
-/// Lines of constant u, then of constant v, as the data of one SVG path in thousandths of the disk's
-/// radius; y points down, as SVG has it. A draw without a direction ends a line.
-std::string grid(const proof::Subject& subject, const glm::vec3& wi) {
-  constexpr int lines = 16, steps = 32;
-  constexpr float last = 0x1.fffffep-1f;  // samplers take numbers below 1
-  std::ostringstream path;
-  for (int direction = 0; direction < 2; ++direction)
-    for (int line = 0; line <= lines; ++line) {
-      bool drawing = false;
-      long x = 0, y = 0;
-      for (int step = 0; step <= steps; ++step) {
-        const float a = std::min(static_cast<float>(line) / lines, last), b = std::min(static_cast<float>(step) / steps, last);
-        const auto s = subject.sample(wi, direction == 0 ? glm::vec2(a, b) : glm::vec2(b, a));
-        if (!s) {
-          drawing = false;
-          continue;
-        }
-        const Polar<float> p = direction_to_polar(s->wo);
-        const long next_x = std::lround(1000 * p.r * std::cos(p.phi)), next_y = -std::lround(1000 * p.r * std::sin(p.phi));
-        if (drawing) {
-          path << 'l' << next_x - x << ',' << next_y - y;
-        } else {
-          path << 'M' << next_x << ',' << next_y;
-        }
-        x = next_x, y = next_y, drawing = true;
-      }
+/// Draws lines as the data of one SVG path in thousandths of the disk's radius; y points down, as SVG
+/// has it.
+class Path {
+ public:
+  /// The line through place(0) ... place(1): steps are halved where the ends lie far apart, and where
+  /// they stay so, the map is torn and the line ends. So it does at a draw without a direction.
+  template <class Place>
+  void add_line(const Place& place) {
+    constexpr int steps = 16;
+    drawing_ = false;
+    std::optional<Point> from = place(0.0f);
+    if (from) draw(*from);
+    for (int k = 0; k < steps; ++k) from = add_step(place, static_cast<float>(k) / steps, from, static_cast<float>(k + 1) / steps, 0);
+  }
+
+  std::string text() const { return text_.str(); }
+
+  struct Point {
+    long x, y;
+  };
+
+ private:
+  template <class Place>
+  std::optional<Point> add_step(const Place& place, float t0, const std::optional<Point>& from, float t1, int depth) {
+    constexpr int deepest = 10;
+    constexpr double far = 70;
+    const std::optional<Point> to = place(t1);
+    if (!from || !to) {
+      drawing_ = false;
+      if (to) draw(*to);
+    } else if (std::hypot(to->x - from->x, to->y - from->y) < far) {
+      draw(*to);
+    } else if (depth < deepest) {
+      const float middle = 0.5f * (t0 + t1);
+      return add_step(place, middle, add_step(place, t0, from, middle, depth + 1), t1, depth + 1);
+    } else {
+      drawing_ = false;
+      draw(*to);
     }
-  return path.str();
+    return to;
+  }
+
+  void draw(const Point& to) {
+    if (!drawing_) {
+      text_ << 'M' << to.x << ',' << to.y;
+    } else if (to.x != last_.x || to.y != last_.y) {
+      text_ << 'l' << to.x - last_.x << ',' << to.y - last_.y;
+    }
+    last_ = to;
+    drawing_ = true;
+  }
+
+  std::ostringstream text_;
+  Point last_{};
+  bool drawing_ = false;
+};
+
+/// Lines of constant u, then of constant v.
+std::string grid(const proof::Subject& subject, const glm::vec3& wi) {
+  constexpr int lines = 16;
+  const auto place = [&](float u, float v) -> std::optional<Path::Point> {
+    constexpr float last = 0x1.fffffep-1f;  // samplers take numbers below 1
+    const auto s = subject.sample(wi, {std::min(u, last), std::min(v, last)});
+    if (!s) return std::nullopt;
+    const Polar<float> p = direction_to_polar(s->wo);
+    return Path::Point{std::lround(1000 * p.r * std::cos(p.phi)), -std::lround(1000 * p.r * std::sin(p.phi))};
+  };
+  Path path;
+  for (int line = 0; line <= lines; ++line) path.add_line([&](float t) { return place(static_cast<float>(line) / lines, t); });
+  for (int line = 0; line <= lines; ++line) path.add_line([&](float t) { return place(t, static_cast<float>(line) / lines); });
+  return path.text();
 }
 
 }  // namespace

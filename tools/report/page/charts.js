@@ -15,11 +15,12 @@ function spec_of(o, height, parts) {
   };
 }
 
-// Powers of ten and, in a short domain, 2 and 5 between them.
+// Powers of ten and, in a short domain, round numbers between them.
 function log_ticks(low, high) {
-  const ticks = [], factors = Math.log10(high / low) > 2.5 ? [1] : [1, 2, 5];
+  const ticks = [], decades = Math.log10(high / low);
+  const factors = decades > 2.5 ? [1] : decades > 1 ? [1, 2, 5] : [1, 1.5, 2, 3, 4, 5, 7];
   for (let e = Math.floor(Math.log10(low)); e <= Math.ceil(Math.log10(high)); ++e)
-    for (const f of factors) if (f * 10 ** e >= low * 0.999 && f * 10 ** e <= high * 1.001) ticks.push(Number((f * 10 ** e).toPrecision(1)));
+    for (const f of factors) if (f * 10 ** e >= low * 0.999 && f * 10 ** e <= high * 1.001) ticks.push(Number((f * 10 ** e).toPrecision(2)));
   const keep = Math.max(1, Math.ceil(ticks.length / 9));
   return ticks.filter((_, k) => k % keep === 0);
 }
@@ -50,7 +51,7 @@ function line_marks(data, markers = true) {
 function speed_accuracy(o) {
   const rows = o.methods.map(m => {
     const x = m.ns[o.time], y = Math.max(relvar_at(m, o.relvar), 1e-6);
-    return {...style_of(key_of(m)), x, y, label: title_of(m), size: 40 + 45 * Math.log2(Math.max(1, m.bytes / 16)),
+    return {...style_of(key_of(m)), x, y, label: title_of(m), size: 70 + 45 * Math.log2(Math.max(1, m.bytes / 16)),
       tip: {method: title_of(m), time: `${number(x)} ns`, relvar: number(y), bytes: bytes_text(m.bytes), efficiency: number(1 / (x * (y + 0.001)))}};
   }).filter(r => r.x > 0 && Number.isFinite(r.y));
   if (!rows.length) return null;
@@ -63,10 +64,12 @@ function speed_accuracy(o) {
     stairs.push({x: r.x, y: k ? front[k - 1].y : ys[1]}, {x: r.x, y: r.y});
   });
   stairs.push({x: xs[1], y: front[front.length - 1].y});
-  // Equal efficiency: y = 1 / (E x) - 0.001, a line for every power of ten.
+  // Equal efficiency: y = 1 / (E x) - 0.001, two lines a decade.
   const lines = [];
+  const label = paint => ({type: 'text', from: {data: 'points'}, encode: {enter: {text: {field: 'datum.label'}, fontSize: {value: 11}, ...paint}},
+    transform: [{type: 'label', size: {signal: '[width, height]'}, offset: [4], anchor: ['right', 'left', 'top', 'bottom', 'top-right', 'bottom-right', 'top-left', 'bottom-left']}]});
   const efficiency = (x, y) => 1 / (x * (y + 0.001));
-  for (let e = Math.ceil(Math.log10(efficiency(xs[1], ys[1]))); e <= Math.log10(efficiency(xs[0], ys[0])); ++e)
+  for (let e = Math.ceil(2 * Math.log10(efficiency(xs[1], ys[1]))) / 2; e <= Math.log10(efficiency(xs[0], ys[0])); e += 0.5)
     for (let k = 0; k <= 60; ++k) {
       const x = xs[0] * (xs[1] / xs[0]) ** (k / 60), y = 1 / (10 ** e * x) - 0.001;
       if (y > ys[0] / 20) lines.push({e, x, y});
@@ -84,8 +87,7 @@ function speed_accuracy(o) {
       ]},
       {type: 'symbol', name: 'points', from: {data: 'rows'}, encode: {enter: {x: {scale: 'x', field: 'x'}, y: {scale: 'y', field: 'y'}, fill: {field: 'color'},
         fillOpacity: {value: 0.8}, stroke: {value: o.colors.back}, shape: {field: 'shape'}, size: {field: 'size'}, tooltip: {field: 'tip'}}}},
-      {type: 'text', from: {data: 'points'}, encode: {enter: {text: {field: 'datum.label'}, fill: {value: o.colors.text}, fontSize: {value: 11}}},
-        transform: [{type: 'label', size: {signal: '[width, height]'}, offset: [4], anchor: ['right', 'left', 'top', 'bottom', 'top-right', 'bottom-right', 'top-left', 'bottom-left']}]},
+      label({stroke: {value: o.colors.back}, strokeWidth: {value: 3}}), label({fill: {value: o.colors.text}}),  // a halo first
     ],
   });
 }
@@ -134,7 +136,7 @@ function weight_histogram(o) {
 function polar_diagram(o) {
   const table = curve_of(o.material, o.theta_i);
   if (!table) return null;
-  const curves = [{key: 'table', color: o.colors.text, dash: [], strokeWidth: 3.5, values: table.table}];
+  const curves = [{key: 'table', color: o.colors.text, dash: [], strokeWidth: 7, values: table.table}];
   for (const m of o.methods) {
     const curve = curve_of(m, o.theta_i);
     if (curve) curves.push({...style_of(key_of(m)), key: key_of(m), strokeWidth: 1.6, values: curve.pdf});
@@ -172,13 +174,13 @@ function polar_diagram(o) {
     data: [{name: 'rows', values: rows}, {name: 'rings', values: rings}, {name: 'spokes', values: spokes}, {name: 'labels', values: labels}],
     marks: [
       {type: 'group', from: {facet: {name: 'ring', data: 'rings', groupby: 'ring'}}, marks: [{type: 'line', from: {data: 'ring'}, encode: {enter: {
-        ...at('datum.x', 'datum.y'), stroke: {value: o.colors.line}}}}]},
+        ...at('datum.x', 'datum.y'), stroke: {value: o.colors.line}, strokeWidth: {value: 1}}}}]},
       {type: 'rule', from: {data: 'spokes'}, encode: {enter: {...at('0', '0'), x2: at('datum.x', '0').x, y2: at('0', 'datum.y').y, stroke: {value: o.colors.line}}}},
       {type: 'text', from: {data: 'labels'}, encode: {enter: {...at('datum.x', 'datum.y'), text: {field: 'text'}, align: {value: 'center'},
         baseline: {field: 'baseline'}, fontSize: {value: 11}, fill: {value: o.colors.dim}}}},
       {type: 'group', from: {facet: {name: 'series', data: 'rows', groupby: ['key', 'color', 'dash', 'strokeWidth']}}, marks: [{type: 'line', from: {data: 'series'}, encode: {enter: {
         ...at('datum.x', 'datum.y'), stroke: {field: 'color'}, strokeDash: {field: 'dash'}, strokeWidth: {field: 'strokeWidth'},
-        strokeOpacity: {signal: "datum.key === 'table' ? 0.35 : 1"}, strokeJoin: {value: 'round'}}}}]},
+        strokeOpacity: {signal: "datum.key === 'table' ? 0.28 : 1"}, strokeJoin: {value: 'round'}}}}]},
       {type: 'rule', encode: {enter: {...at(String(Math.sin(t_in)), String(Math.cos(t_in))), x2: at('0', '0').x, y2: at('0', '0').y,
         stroke: {value: o.colors.text}, strokeDash: {value: [4, 4]}}}},
       {type: 'text', encode: {enter: {...at(String(1.02 * Math.sin(t_in)), String(1.02 * Math.cos(t_in))), text: {value: 'wi'}, fontStyle: {value: 'italic'},

@@ -16,7 +16,7 @@ const time_title = time => time_titles[time] || time;
 // The charts of a material: file name, specification, title, what it shows, and its own controls.
 const charts = [
   {id: 'speed-accuracy', wide: true, make: speed_accuracy, title: 'Speed against accuracy', tools: ['time', 'relvar'],
-    text: 'Lower left is better. Solid line: the Pareto front. Dotted lines: equal efficiency, a factor of ten apart. The area of a marker grows with the logarithm of the bytes.'},
+    text: 'Lower left is better. Solid line: the Pareto front. Dotted lines: equal efficiency, a factor of √10 apart. The area of a marker grows with the logarithm of the bytes.'},
   {id: 'relvar', make: relvar_over_angles, title: 'Relative variance over the incident angle', text: 'The number of samples for a given noise is in proportion to it.'},
   {id: 'worst-weight', make: worst_over_angles, title: 'Worst weight over the incident angle', text: 'The brightest firefly of 65,536 draws, over the mean.'},
   {id: 'weights', make: weight_histogram, title: 'Weights', angle: true, text: 'Shares of 16,384 draws in bins a fortieth of a decade wide; the outer bins take what is beyond. A perfect sampler has all weights at 1.'},
@@ -76,8 +76,8 @@ function fits_table(material) {
 }
 
 function figure_html(chart, file, tools) {
-  return `<figure class="${chart.wide ? 'wide' : ''}" data-chart="${chart.id}" data-file="${escaped(file)}"><h3>${chart.title}<span class="at"></span></h3>` +
-    `<div class="tools">${tools}<span class="save"><button type="button" data-save="svg" aria-label="${chart.title} as SVG">SVG</button> ` +
+  return `<figure class="${chart.wide ? 'wide' : ''}" data-chart="${chart.id}" data-file="${escaped(file)}">` +
+    `<div class="tools"><h3>${chart.title}<span class="at"></span></h3>${tools}<span class="save"><button type="button" data-save="svg" aria-label="${chart.title} as SVG">SVG</button> ` +
     `<button type="button" data-save="png" aria-label="${chart.title} as PNG">PNG</button></span></div><div class="chart"></div><figcaption>${chart.text}</figcaption></figure>`;
 }
 
@@ -247,7 +247,7 @@ function start() {
     const found = location.hash.match(/^#material-(\d+)$/);
     if (found && Number(found[1]) < report.materials.length) {
       show_material(Number(found[1]));
-      element('controls').scrollIntoView();
+      element(`material-${found[1]}`).scrollIntoView();
     }
   };
   addEventListener('hashchange', follow);
