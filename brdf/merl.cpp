@@ -1,9 +1,9 @@
-#include <gonio/brdf/atomic_file.h>
 #include <gonio/brdf/bytes.h>
 #include <gonio/brdf/fast_atan2.h>
 #include <gonio/brdf/interpolate.h>
 #include <gonio/brdf/merl.h>
 #include <gonio/brdf/repair.h>
+#include <gonio/mapping/atomic_file.h>
 #include <gonio/mapping/error.h>
 
 #include <cmath>

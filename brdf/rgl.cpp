@@ -78,6 +78,10 @@ Lerp RglTable::slice_at(float theta) const noexcept {
   return {hi - 1, hi, (theta - theta_i_[hi - 1]) / (theta_i_[hi] - theta_i_[hi - 1])};
 }
 
+// Both hardly depend on the azimuth in an isotropic file; phi = 0 is u_phi = 0.5.
+float RglTable::ndf(float theta) const noexcept { return bilinear(ndf_, u_theta_of(theta), 0.5f); }
+float RglTable::sigma(float theta) const noexcept { return bilinear(sigma_, u_theta_of(theta), 0.5f); }
+
 RglTable::Normal RglTable::half_vector(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
   const glm::vec3 m = wi + wo;
   // Azimuth relative to wi; at the pole, where wi has none, relative to +x.
@@ -107,11 +111,9 @@ glm::vec3 RglTable::value_at(const Normal& normal, float theta_i, const Lerp& sl
                              float y) const noexcept {
   const glm::vec3 colour = glm::max(colour_at(slice, x, y), 0.0f);
   if (!jacobian_) return colour;
-  // The projected area hardly depends on the azimuth of an isotropic file; phi_i = 0 is u_phi =
-  // 0.5.
-  const float sigma = bilinear(sigma_, u_theta_of(theta_i), 0.5f);
-  if (!(sigma > 0.0f)) return glm::vec3(0.0f);
-  return colour * (bilinear(ndf_, normal.u_theta, normal.u_phi) / (4.0f * sigma));
+  const float area = sigma(theta_i);
+  if (!(area > 0.0f)) return glm::vec3(0.0f);
+  return colour * (bilinear(ndf_, normal.u_theta, normal.u_phi) / (4.0f * area));
 }
 
 glm::vec3 RglTable::eval_cosine(const glm::vec3& wi, const glm::vec3& wo) const noexcept {

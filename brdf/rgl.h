@@ -77,6 +77,12 @@ class RglTable {
   /// fail.
   float pdf(const glm::vec3& wi, const glm::vec3& wo) const noexcept;
 
+  /// The file's own microfacet density at polar angle theta [rad], in 1/sr.
+  float ndf(float theta) const noexcept;
+
+  /// The file's own projected area of the microfacets as seen from polar angle theta [rad], 1 at 0.
+  float sigma(float theta) const noexcept;
+
   const CellCounts& cells() const noexcept { return counts_; }
   bool spectral() const noexcept { return n_wavelengths_ > 0; }
   const std::vector<float>& theta_i() const noexcept { return theta_i_; }

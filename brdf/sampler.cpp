@@ -8,13 +8,13 @@
 namespace gonio {
 
 Sampler::Sampler(std::shared_ptr<const BrdfTable> table, const StackOptions& options, const Progress& progress)
-    : stack_(build_stack(*table, options, progress), Interpolation::displacement), table_(std::move(table)) {}
+    : stack_(build_stack(*table, options, progress), options.interpolation), table_(std::move(table)) {}
 
 Sampler::Sampler(std::shared_ptr<const BrdfTable> table, const StackGrid& diagrams, Interpolation interpolation)
     : stack_(diagrams, interpolation), table_(std::move(table)) {}
 
-Sampler::Sampler(const StackGrid& diagrams, Colour colour)
-    : stack_(diagrams, Interpolation::displacement), colour_(std::move(colour)) {
+Sampler::Sampler(const StackGrid& diagrams, Colour colour, Interpolation interpolation)
+    : stack_(diagrams, interpolation), colour_(std::move(colour)) {
   const std::size_t per_angle = static_cast<std::size_t>(colour_.side() * (colour_.side() / 2));
   if (colour_.empty() || colour_.values().size() != per_angle * diagrams.theta_i.size())
     throw Error("sampler: colour: found " + std::to_string(colour_.values().size()) + " values, expected " +

@@ -31,7 +31,7 @@ struct BsdfSample {
 /// constructors allocates or locks.
 class Sampler {
  public:
-  /// Builds a stack for the table. Takes about a second; see StackOptions for the size.
+  /// Builds a stack for the table and its options' interpolation. Takes seconds; see StackOptions.
   explicit Sampler(std::shared_ptr<const BrdfTable> table, const StackOptions& options = {},
                    const Progress& progress = {});
 
@@ -40,7 +40,7 @@ class Sampler {
           Interpolation interpolation = Interpolation::displacement);
 
   /// Self-contained. @throws Error if `colour` does not have one layer per diagram.
-  Sampler(const StackGrid& diagrams, Colour colour);
+  Sampler(const StackGrid& diagrams, Colour colour, Interpolation interpolation = Interpolation::displacement);
 
   /// Draws wo for `wi` from two uniform numbers in [0, 1). Empty for wi.z <= 0, and for a draw that
   /// falls on a direction without density (a measure-zero event).

@@ -49,21 +49,21 @@ class Fitter {
 
   Fit stage(const LobeModel& form, const LobeModel* previous) {
     std::vector<Attempt> attempts = best_candidates(form, previous);
+    const ParameterLayout layout(form, options_.separate_channels);
     if (previous) {
-      // The smaller model with a lobe of no amplitude costs exactly the same, so that no stage can
-      // lose.
+      // The smaller model with a lobe of no amplitude costs exactly the same, and refining
+      // never raises a cost: so no stage can lose.
       Attempt same;
       same.model = form;
       std::copy(previous->lobes.begin(), previous->lobes.end(), same.model.lobes.begin());
       Lobe& added = same.model.lobes.back();
       added.shape = previous->lobes.back().shape;
       if (added.kind != previous->lobes.back().kind) added.shape = Lobe::initial(added.kind).shape;
-      if (added.fresnel == Fresnel::schlick) {
-        added.color = {};
-        attempts.push_back(same);
-      }
+      added.color = {};
+      if (added.fresnel == Fresnel::conductor) added.color[0] = glm::dvec3(1);  // eta of vacuum
+      same.initial_cost = cost(layout, same.model);
+      attempts.push_back(same);
     }
-    const ParameterLayout layout(form, options_.separate_channels);
     parallel_for(attempts.size(), [&](size_t i) { refine(layout, attempts[i]); });
     return summarise(layout, attempts);
   }
@@ -137,7 +137,11 @@ class Fitter {
     double sum = 0, residual[3];
     for (const FitSample& sample : samples_) {
       SampleResidual(sample, layout, options_.compression).Evaluate(parameters, residual, nullptr);
-      sum += residual[0] * residual[0] + residual[1] * residual[1] + residual[2] * residual[2];
+      const double square =
+          residual[0] * residual[0] + residual[1] * residual[1] + residual[2] * residual[2];
+      const double width = options_.robust_width * sample.weight;
+      sum += width > 0 && square > width * width ? 2 * width * std::sqrt(square) - width * width
+                                                 : square;
     }
     return sum / 2;
   }
@@ -173,7 +177,6 @@ class Fitter {
     ceres::Solve(solver, &problem, &summary);
     if (!summary.IsSolutionUsable()) return;
     layout.unpack(x.data(), attempt.model);
-    attempt.initial_cost = summary.initial_cost;
     attempt.cost = summary.final_cost;
     attempt.iterations = static_cast<int>(summary.iterations.size());
     attempt.termination = summary.termination_type == ceres::CONVERGENCE

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <string_view>
+#include <type_traits>
 
 namespace gonio::detail {
 namespace {
@@ -46,38 +47,88 @@ T density(const Quadrature& quadrature, const Quadrature::Point& point, const T*
 // the mixture loses below the horizon, which is the relative variance of a draw. Parameters: square
 // roots of the weights before normalisation (the least share of the cosine apart), then per lobe
 // log alpha_x, log alpha_y and shear.
-class Divergence {
+//
+// Jets carry the derivatives of one lobe by its own three parameters, and the mixture is
+// differentiated by hand: most of a jet of all parameters would be zeros.
+class Divergence : public ceres::CostFunction {
  public:
   Divergence(const Quadrature& quadrature, size_t lobes, double cosine_share)
-      : quadrature_(quadrature), lobes_(lobes), cosine_share_(cosine_share) {}
+      : quadrature_(quadrature), lobes_(lobes), cosine_share_(cosine_share) {
+    set_num_residuals(static_cast<int>(quadrature.points.size()));
+    *mutable_parameter_block_sizes() = {static_cast<int>(1 + lobes),
+                                        static_cast<int>(shape_size * lobes)};
+  }
 
-  template <class T>
-  bool operator()(T const* const* x, T* residual) const {
-    using std::exp;
-    using std::sqrt;
-    T weight[1 + LobeSampler::max_lobes];
-    ShearedGgx<T> shape[LobeSampler::max_lobes];
-    weights(x[0], weight);
-    for (size_t k = 0; k < lobes_; ++k) {
-      const T* p = x[1] + k * shape_size;
-      shape[k] = {exp(p[0]), exp(p[1]), p[2]};
-    }
-    for (const Quadrature::Point& point : quadrature_.points) {
-      const T p = density(quadrature_, point, weight, shape, lobes_) + T(1e-12);
-      *residual++ = T(std::sqrt(point.solid_angle)) * (T(point.target) - p) / sqrt(p);
+  bool Evaluate(double const* const* x, double* residuals, double** jacobians) const override {
+    double weight[1 + LobeSampler::max_lobes];
+    const double rest = weights(x[0], weight);
+    double* by_root = jacobians ? jacobians[0] : nullptr;
+    double* by_shape = jacobians ? jacobians[1] : nullptr;
+    if (by_shape) {
+      fill<ceres::Jet<double, shape_size>>(x, weight, rest, residuals, by_root, by_shape);
+    } else {
+      fill<double>(x, weight, rest, residuals, by_root, by_shape);
     }
     return true;
   }
 
-  template <class T>
-  void weights(const T* x, T* weight) const {
-    T sum(0);
+  /// Sums to 1. Returns the sum of the squares before normalisation.
+  double weights(const double* x, double* weight) const {
+    double sum = 0;
     for (size_t k = 0; k <= lobes_; ++k) sum += x[k] * x[k];
-    for (size_t k = 0; k <= lobes_; ++k) weight[k] = T(1 - cosine_share_) * x[k] * x[k] / sum;
-    weight[0] += T(cosine_share_);
+    for (size_t k = 0; k <= lobes_; ++k) weight[k] = (1 - cosine_share_) * x[k] * x[k] / sum;
+    weight[0] += cosine_share_;
+    return sum;
   }
 
  private:
+  template <class T>
+  void fill(double const* const* x, const double* weight, double root_sum, double* residual,
+            double* by_root, double* by_shape) const {
+    using std::exp;
+    ShearedGgx<T> shape[LobeSampler::max_lobes];
+    for (size_t k = 0; k < lobes_; ++k) {
+      T p[shape_size];
+      for (int i = 0; i < shape_size; ++i) p[i] = parameter<T>(x[1][k * shape_size + i], i);
+      shape[k] = {exp(p[0]), exp(p[1]), p[2]};
+    }
+    for (const Quadrature::Point& point : quadrature_.points) {
+      T part[LobeSampler::max_lobes];
+      double value[1 + LobeSampler::max_lobes] = {cosine_pdf(point.wo.z)};
+      double p = weight[0] * value[0] + 1e-12;
+      double mean = (weight[0] - cosine_share_) * value[0];  // with the weights that x decides
+      for (size_t k = 0; k < lobes_; ++k) {
+        part[k] = shape[k].pdf(quadrature_.wi, point.wo);
+        value[k + 1] = plain(part[k]);
+        p += weight[k + 1] * value[k + 1];
+        mean += weight[k + 1] * value[k + 1];
+      }
+      const double scale = std::sqrt(point.solid_angle / p);
+      *residual++ = scale * (point.target - p);
+      const double slope = -0.5 * scale * (point.target + p) / p;  // of the residual by p
+      if (by_root) {
+        for (size_t k = 0; k <= lobes_; ++k)
+          *by_root++ = slope * 2 * x[0][k] / root_sum * ((1 - cosine_share_) * value[k] - mean);
+      }
+      if constexpr (!std::is_same_v<T, double>) {
+        for (size_t k = 0; k < lobes_; ++k) {
+          for (int i = 0; i < shape_size; ++i) *by_shape++ = slope * weight[k + 1] * part[k].v[i];
+        }
+      }
+    }
+  }
+
+  template <class T>
+  static T parameter(double value, [[maybe_unused]] int index) {
+    if constexpr (std::is_same_v<T, double>) {
+      return value;
+    } else {
+      return T(value, index);
+    }
+  }
+  static double plain(double x) { return x; }
+  static double plain(const ceres::Jet<double, shape_size>& x) { return x.a; }
+
   const Quadrature& quadrature_;
   size_t lobes_;
   double cosine_share_;
@@ -231,14 +282,9 @@ Proposal refine_proposal(const Quadrature& quadrature, const Proposal& start, bo
     }
     shape.push_back(s.shear);
   }
-  // 16 covers all parameters of three lobes in one sweep.
-  auto* cost = new ceres::DynamicAutoDiffCostFunction<Divergence, 16>(
-      new Divergence(quadrature, lobes, cosine_share));
-  cost->AddParameterBlock(static_cast<int>(root.size()));
-  cost->AddParameterBlock(static_cast<int>(shape.size()));
-  cost->SetNumResiduals(static_cast<int>(quadrature.points.size()));
   ceres::Problem problem;
-  problem.AddResidualBlock(cost, nullptr, root.data(), shape.data());
+  problem.AddResidualBlock(new Divergence(quadrature, lobes, cosine_share), nullptr, root.data(),
+                           shape.data());
   for (int i = 0; i < static_cast<int>(shape.size()); ++i) {
     const bool shear = i % shape_size == 2;
     problem.SetParameterLowerBound(shape.data(), i, shear ? -max_shear : std::log(min_alpha));

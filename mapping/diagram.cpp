@@ -123,6 +123,12 @@ DiagramGrid Diagram<T>::grid() const {
   return grid;
 }
 
+template <class T>
+bool Diagram<T>::same_lines(const Diagram& other) const noexcept {
+  return azimuth_ == other.azimuth_ && meridians_ == other.meridians_ && parallels_ == other.parallels_ &&
+         std::equal(phi(), phi() + meridians_, other.phi()) && std::equal(r(), r() + parallels_, other.r());
+}
+
 template class Diagram<float>;
 template class Diagram<double>;
 template class Diagram<long double>;

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include <gonio/mapping/azimuth_cell.h>
 #include <gonio/mapping/hemisphere.h>
 #include <gonio/mapping/radial_cell.h>
 
@@ -92,7 +93,13 @@ class Diagram {
   /// The lines and normalised densities; building a diagram from them gives this one again, bit by bit.
   DiagramGrid grid() const;
 
+  /// Whether the meridians and parallels of another diagram are the same.
+  bool same_lines(const Diagram& other) const noexcept;
+
  private:
+  template <class U>
+  friend class Blend;
+
   const T* phi() const noexcept { return values_.data(); }
   const T* cumulative_phi() const noexcept { return phi() + meridians_; }
   const T* r() const noexcept { return phi() + 2 * meridians_; }
@@ -121,20 +128,12 @@ inline int find_cell(const T* x, int n, T t) noexcept {
 
 template <class T>
 typename Diagram<T>::Meridian Diagram<T>::meridian_at(T u) const noexcept {
-  using std::sqrt;
   const T* cumulative_mass = cumulative_phi();
   const T target = std::clamp(u, T(0), T(1)) * mass();
   const int i = find_cell(cumulative_mass, meridians_, target);
   const T m0 = meridian_mass(i), m1 = meridian_mass(i + 1);
   const T width = phi()[i + 1] - phi()[i];
-  // Fraction x of the cell's mass; mass (1 - a) m0 + a m1, in units of m0 + m1, so that neither
-  // very small masses underflow nor nearly equal ones cancel: a = x / (n0 + sqrt(n0^2 + (1 - 2 n0) x)).
-  const T sum = m0 + m1;
-  if (!(sum > 0)) return {i, 0, phi()[i], 0};
-  const T x = std::clamp(2 * (target - cumulative_mass[i]) / (width * sum), T(0), T(1));
-  const T n0 = m0 / sum;
-  const T denominator = n0 + sqrt(std::max(n0 * n0 + (1 - 2 * n0) * x, T(0)));
-  const T a = denominator > 0 ? std::min(x / denominator, T(1)) : T(0);
+  const T a = AzimuthCell<T>{width, m0, m1}.invert(target - cumulative_mass[i]);
   return {i, a, phi()[i] + a * width, (1 - a) * m0 + a * m1};
 }
 

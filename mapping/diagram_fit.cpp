@@ -22,6 +22,7 @@ struct Reference {
   std::vector<double> value;  // phi-major
   double floor;               // what a value is at least taken for when errors are put relative to it
 
+  double mass() const { return floor / mean_floor * phi.back(); }
   double at(std::size_t p, std::size_t j) const { return value[p * r.size() + j]; }
 };
 
@@ -41,7 +42,7 @@ Axis hat_weights(const Axis& x, bool radial) {
   return weight;
 }
 
-Reference tabulate(const std::function<double(Polar<double>)>& density, Axis phi, Axis r) {
+Reference tabulate(const DiskDensity& density, Axis phi, Axis r) {
   Reference ref;
   ref.phi = std::move(phi);
   ref.r = std::move(r);
@@ -61,19 +62,33 @@ Reference tabulate(const std::function<double(Polar<double>)>& density, Axis phi
   return ref;
 }
 
-/// New lines where the function bends: h ~ (g''^2 / g)^(-1/5) spreads the error of linear
+/// Several functions on the same reference grid; those without mass are left out.
+using References = std::vector<Reference>;
+
+References tabulate(const std::vector<DiskDensity>& densities, const Axis& phi, const Axis& r) {
+  References refs;
+  for (const DiskDensity& density : densities) {
+    Reference ref = tabulate(density, phi, r);
+    if (ref.mass() > 0) refs.push_back(std::move(ref));
+  }
+  return refs;
+}
+
+/// New lines where the functions bend: h ~ (g''^2 / g)^(-1/5) spreads the error of linear
 /// interpolation evenly. A share of the lines stays evenly spaced, to see what the last grid missed.
-Axis concentrate(const Reference& ref, bool radial, std::size_t lines_wanted) {
-  const Axis& x = radial ? ref.r : ref.phi;
-  const std::size_t count = x.size(), others = radial ? ref.phi.size() : ref.r.size();
+Axis concentrate(const References& refs, bool radial, std::size_t lines_wanted) {
+  const Axis& x = radial ? refs.front().r : refs.front().phi;
+  const std::size_t count = x.size(), others = radial ? refs.front().phi.size() : refs.front().r.size();
   Axis bend(count, 0.0);
   for (std::size_t k = 1; k + 1 < count; ++k) {
     const double h0 = x[k] - x[k - 1], h1 = x[k + 1] - x[k];
-    for (std::size_t o = 0; o < others; ++o) {
-      const auto g = [&](std::size_t i) { return radial ? ref.at(o, i) : ref.at(i, o); };
-      const double second = 2 * ((g(k + 1) - g(k)) / h1 - (g(k) - g(k - 1)) / h0) / (h0 + h1);
-      const double weight = radial ? ref.phi_weight[o] * x[k] : ref.r_weight[o];
-      bend[k] += weight * second * second / (g(k) + ref.floor);
+    for (const Reference& ref : refs) {
+      for (std::size_t o = 0; o < others; ++o) {
+        const auto g = [&](std::size_t i) { return radial ? ref.at(o, i) : ref.at(i, o); };
+        const double second = 2 * ((g(k + 1) - g(k)) / h1 - (g(k) - g(k - 1)) / h0) / (h0 + h1);
+        const double weight = radial ? ref.phi_weight[o] * x[k] : ref.r_weight[o];
+        bend[k] += weight * second * second / ((g(k) + ref.floor) * ref.mass());
+      }
     }
     bend[k] = std::pow(bend[k], 0.2);
   }
@@ -104,14 +119,15 @@ Axis concentrate(const Reference& ref, bool radial, std::size_t lines_wanted) {
   return lines;
 }
 
-/// The squared error, relative to the density, of interpolating linearly between the lines a and b,
-/// for all pairs, summed over the other axis. Running sums make every pair a constant cost.
-std::vector<double> strip_errors(const Reference& ref, bool radial) {
+/// Adds the squared error, relative to the density, of interpolating linearly between the lines a and b,
+/// for all pairs, summed over the other axis, as a share of the mass. Running sums make every pair a
+/// constant cost.
+void add_strip_errors(const Reference& ref, bool radial, std::vector<double>& error) {
   const Axis& x = radial ? ref.r : ref.phi;
   const Axis& weight = radial ? ref.r_weight : ref.phi_weight;
   const Axis& other_weight = radial ? ref.phi_weight : ref.r_weight;
   const std::size_t count = x.size();
-  std::vector<double> error(count * count, 0.0);
+  const double scale = 1 / ref.mass();
   struct Sums {
     double one = 0, x = 0, xx = 0, g = 0, gx = 0, gg = 0;
   };
@@ -132,10 +148,18 @@ std::vector<double> strip_errors(const Reference& ref, bool radial) {
         const double e = (to.gg - from.gg) - 2 * start * (to.g - from.g) - 2 * slope * (to.gx - from.gx) +
                          start * start * (to.one - from.one) + 2 * start * slope * (to.x - from.x) +
                          slope * slope * (to.xx - from.xx);
-        error[a * count + b] += std::max(e, 0.0);
+        error[a * count + b] += std::max(e, 0.0) * scale;
       }
     }
   }
+}
+
+/// The mean over the functions.
+std::vector<double> strip_errors(const References& refs, bool radial) {
+  const std::size_t count = radial ? refs.front().r.size() : refs.front().phi.size();
+  std::vector<double> error(count * count, 0.0);
+  for (const Reference& ref : refs) add_strip_errors(ref, radial, error);
+  for (double& e : error) e /= static_cast<double>(refs.size());
   return error;
 }
 
@@ -270,39 +294,69 @@ double fit_densities(const Reference& ref, const std::vector<Position>& across,
   }
 }
 
-}  // namespace
+struct Fit {
+  SharedLines lines;
+  std::vector<DiagramGrid> grids;  // of the densities with mass; none if there are none
+};
 
-DiagramGrid fit_diagram(const std::function<double(Polar<double>)>& density, Azimuth azimuth,
-                        const FitLimits& limits) {
+Fit fit(const std::vector<DiskDensity>& densities, Azimuth azimuth, const FitLimits& limits) {
   if (limits.meridians < 2 || limits.parallels < 2)
     throw Error("diagram fit: found a size of " + std::to_string(limits.meridians) + " x " +
                 std::to_string(limits.parallels) + ", expected at least 2 x 2");
   const std::size_t most_m = static_cast<std::size_t>(limits.meridians);
   const std::size_t most_n = static_cast<std::size_t>(limits.parallels);
   const double range = azimuth == Azimuth::half ? pi<double> : 2 * pi<double>;
-  Reference ref = tabulate(density, uniform(range, 65), uniform(1.0, 129));
+  References refs = tabulate(densities, uniform(range, 65), uniform(1.0, 129));
   const auto refine = [&](std::size_t columns, std::size_t rows) {
-    Axis phi = concentrate(ref, false, columns), r = concentrate(ref, true, rows);
-    ref = tabulate(density, std::move(phi), std::move(r));
+    if (refs.empty()) return;
+    const Axis phi = concentrate(refs, false, columns), r = concentrate(refs, true, rows);
+    refs = tabulate(densities, phi, r);
   };
   refine(65, 129);
   refine(std::max<std::size_t>(97, 3 * most_m + 1), std::max<std::size_t>(129, 4 * most_n + 1));
+  if (refs.empty()) return {};
 
-  const double mass = ref.floor / mean_floor * ref.phi.back();
-  if (!(mass > 0)) return {azimuth, {0, range}, {0, 1}, {0, 0, 0, 0}};
-  const BestLines best_across(strip_errors(ref, false), ref.phi.size(), most_m);
-  const BestLines best_along(strip_errors(ref, true), ref.r.size(), most_n);
+  const Axis &phi = refs.front().phi, &r = refs.front().r;
+  const BestLines best_across(strip_errors(refs, false), phi.size(), most_m);
+  const BestLines best_along(strip_errors(refs, true), r.size(), most_n);
   // What the strip errors promise and what the fit reaches differ by the material; the first guess
   // is that the fit leaves a sixth.
   double gain = 6;
   for (;;) {
-    const auto [m, n] = choose_size(best_across, most_m, best_along, most_n, gain * limits.tolerance * mass);
-    const auto across = best_across.lines(m), along = best_along.lines(n);
-    DiagramGrid grid = interpolate(ref, azimuth, across, along);
-    const double relvar = fit_densities(ref, positions(ref.phi, across), positions(ref.r, along), grid);
-    if (relvar <= limits.tolerance || (m == most_m && n == most_n)) return grid;
+    const auto [m, n] = choose_size(best_across, most_m, best_along, most_n, gain * limits.tolerance);
+    Fit result{{azimuth, phi, r, best_across.lines(m), best_along.lines(n)}, {}};
+    const SharedLines& lines = result.lines;
+    const auto across = positions(phi, lines.across), along = positions(r, lines.along);
+    double relvar = 0;  // the largest
+    for (const Reference& ref : refs) {
+      DiagramGrid grid = interpolate(ref, azimuth, lines.across, lines.along);
+      relvar = std::max(relvar, fit_densities(ref, across, along, grid));
+      result.grids.push_back(std::move(grid));
+    }
+    if (relvar <= limits.tolerance || (m == most_m && n == most_n)) return result;
     gain *= std::min(0.8, limits.tolerance / relvar);
   }
+}
+
+}  // namespace
+
+DiagramGrid fit_diagram(const DiskDensity& density, Azimuth azimuth, const FitLimits& limits) {
+  Fit result = fit({density}, azimuth, limits);
+  if (!result.grids.empty()) return std::move(result.grids.front());
+  return {azimuth, {0, azimuth == Azimuth::half ? pi<double> : 2 * pi<double>}, {0, 1}, {0, 0, 0, 0}};
+}
+
+SharedLines fit_lines(const std::vector<DiskDensity>& densities, Azimuth azimuth, const FitLimits& limits) {
+  Fit result = fit(densities, azimuth, limits);
+  if (result.grids.empty()) throw Error("diagram fit: found densities of 0 everywhere, expected some mass");
+  return std::move(result.lines);
+}
+
+DiagramGrid fit_diagram(const DiskDensity& density, const SharedLines& lines) {
+  const Reference ref = tabulate(density, lines.phi, lines.r);
+  DiagramGrid grid = interpolate(ref, lines.azimuth, lines.across, lines.along);
+  if (ref.mass() > 0) fit_densities(ref, positions(lines.phi, lines.across), positions(lines.r, lines.along), grid);
+  return grid;
 }
 
 }  // namespace gonio

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
+#include <vector>
 
 #include <gonio/mapping/diagram.h>
 
@@ -12,6 +14,10 @@ struct FitLimits {
   int parallels = 40;        ///< at most this many, >= 2
   double tolerance = 0.002;  ///< relative variance that ends the growth; 0 takes all the lines allowed
 };
+
+/// A density at (r, phi) of the disk [any scale]; phi in [0, pi] or [0, 2 pi]. Called from one thread,
+/// some 10^4 times a diagram. Non-finite or negative values count as 0.
+using DiskDensity = std::function<double(Polar<double>)>;
 
 /// Chooses lines and densities of a diagram from a density function, so that the bilinear diagram is
 /// as close to it as its size allows, in the sense that decides sampling quality: the chi-square
@@ -27,11 +33,24 @@ struct FitLimits {
 ///    positive, conserve the mass and descend on the divergence. Interpolating the function at the
 ///    crossings would leave several times its variance. The pole is one value for all meridians.
 ///
-/// @param density the density at (r, phi) [any scale], finite and >= 0; phi in [0, pi] or [0, 2 pi].
-///   Called from one thread, some 10^4 times. Non-finite or negative values count as 0.
 /// @return a grid with the scale of `density`; a function that is 0 everywhere gives zeros.
 /// @throws Error for limits below 2 x 2.
-DiagramGrid fit_diagram(const std::function<double(Polar<double>)>& density, Azimuth azimuth,
-                        const FitLimits& limits = {});
+DiagramGrid fit_diagram(const DiskDensity& density, Azimuth azimuth, const FitLimits& limits = {});
+
+/// Lines for several diagrams: `across` and `along` are indices into a finer reference grid, on which
+/// the densities are fitted.
+struct SharedLines {
+  Azimuth azimuth;
+  std::vector<double> phi, r;               ///< the reference grid
+  std::vector<std::size_t> across, along;  ///< the lines among them, first and last included
+};
+
+/// The lines that serve all of the densities best: steps 1 and 2 of fit_diagram() on the sum of their
+/// errors, each relative to its own density, the size by the largest relative variance that step 3 leaves.
+/// @throws Error for limits below 2 x 2, or if all densities are 0 everywhere.
+SharedLines fit_lines(const std::vector<DiskDensity>& densities, Azimuth azimuth, const FitLimits& limits = {});
+
+/// Step 3 of fit_diagram() on given lines.
+DiagramGrid fit_diagram(const DiskDensity& density, const SharedLines& lines);
 
 }  // namespace gonio

@@ -4,21 +4,9 @@
 
 #include <gonio/mapping/diagram.h>
 #include <gonio/mapping/monotone_root.h>
+#include <gonio/mapping/polar_map.h>
 
 namespace gonio {
-
-/// A polar point with the pdf per solid angle [1/sr] there.
-template <class T>
-struct PolarSample {
-  Polar<T> at;
-  T pdf;
-};
-
-/// Two uniform numbers of a diagram with the pdf [1/sr] of their image.
-template <class T>
-struct PolarInverse {
-  T u, v, pdf;
-};
 
 /// The displacement map between two diagrams: both map (u, v), and the images are interpolated by
 /// alpha, as Havran et al. (2003, section 6.2) propose, in polar coordinates of the disk. The paper

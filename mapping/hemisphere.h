@@ -50,4 +50,20 @@ T radius_to_theta(T r) noexcept {
   return 2 * std::asin(r / std::sqrt(T(2)));
 }
 
+/// The same without a library call, which would be a fifth of a draw of a luminaire: relative error
+/// below 2e-7. theta / r as a polynomial through 8 Chebyshev nodes of r^2 in [0, 1], whose own
+/// relative error is 1.8e-8.
+inline float radius_to_theta(float r) noexcept {
+  const float z = r * r;
+  float p = 1.211737771e-3f;
+  p = p * z - 1.990642964e-3f;
+  p = p * z + 3.338417016e-3f;
+  p = p * z + 1.478859820e-3f;
+  p = p * z + 8.216730964e-3f;
+  p = p * z + 2.647448250e-2f;
+  p = p * z + 1.178531667e-1f;
+  p = p * z + 1.414213546f;
+  return r * p;
+}
+
 }  // namespace gonio

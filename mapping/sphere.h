@@ -129,18 +129,17 @@ typename SphereDiagram<T>::Place SphereDiagram<T>::at(T u, T v) const noexcept {
     p.j = (1 - p.a) * u0[p.j + half] + p.a * u1[p.j + half] < target ? p.j + half : p.j;
     length -= half;
   }
+  // Beyond the equator the cell runs backwards, and so does the fraction. One inversion for both:
+  // which of them is random, and a branch on it would be mispredicted every other time.
+  const bool near = p.j < equator_;
   const RadialCell<T> c = cell(p);
   const T mass = c.mass(1);
   const T inside = target - ((1 - p.a) * u0[p.j] + p.a * u1[p.j]);
-  const T fraction = mass > 0 ? std::clamp(inside / mass, T(0), T(1)) : T(0);
-  if (p.j < equator_) {
-    p.s = fraction > 0 ? c.invert(fraction) : T(0);
-    p.radius = c.r0 + p.s * c.h;
-  } else {
-    const T back = fraction < 1 ? c.invert(1 - fraction) : T(0);
-    p.s = 1 - back;
-    p.radius = c.r0 + back * c.h;
-  }
+  const T part = mass > 0 ? std::clamp(inside / mass, T(0), T(1)) : T(0);
+  const T fraction = near ? part : 1 - part;
+  const T s = fraction > 0 ? c.invert(fraction) : T(0);
+  p.s = near ? s : 1 - s;
+  p.radius = c.r0 + s * c.h;
   return p;
 }
 

@@ -53,12 +53,15 @@ const char* to_string(Interpolation interpolation) noexcept {
   switch (interpolation) {
     case Interpolation::nearest: return "nearest";
     case Interpolation::mixture: return "mixture";
+    case Interpolation::blend: return "blend";
     default: return "displacement";
   }
 }
 
+const char* to_string(Chart chart) noexcept { return chart == Chart::half ? "half" : "outgoing"; }
+
 template <class T>
-Stack<T>::Stack(const StackGrid& grid, Interpolation interpolation) : interpolation_(interpolation) {
+Stack<T>::Stack(const StackGrid& grid, Interpolation interpolation) : interpolation_(interpolation), chart_(grid.chart) {
   if (grid.theta_i.empty() || grid.theta_i.size() != grid.diagrams.size())
     throw Error("stack: found " + std::to_string(grid.theta_i.size()) + " incident angles and " +
                 std::to_string(grid.diagrams.size()) + " diagrams, expected as many, at least one");
@@ -73,6 +76,9 @@ Stack<T>::Stack(const StackGrid& grid, Interpolation interpolation) : interpolat
                   ": found another azimuth range than that of diagram 0, expected the same");
     theta_i_.push_back(static_cast<T>(theta));
     diagrams_.emplace_back(grid.diagrams[k]);
+    if (interpolation == Interpolation::blend && !diagrams_[k].same_lines(diagrams_.front()))
+      throw Error("stack: diagram " + std::to_string(k) +
+                  ": found other lines than those of diagram 0, expected the same: blend needs shared lines");
   }
   theta_i_.shrink_to_fit();
   diagrams_.shrink_to_fit();
@@ -108,34 +114,51 @@ DirectionSample<T> Stack<T>::sample(T theta_i, T u, T v) const noexcept {
     s = sample_one(first ? at.first : at.second, folded.u, rest);
     const Diagram<T>& other = first ? at.second : at.first;
     s.pdf = (first ? w0 : at.alpha) * s.pdf + (first ? at.alpha : w0) * pdf_one(other, s.at);
+  } else if (interpolation_ == Interpolation::blend) {
+    s = Blend<T>(at.first, at.second, at.alpha).sample(folded.u, disk.r2);
   } else {
     s = Displacement<T>(at.first, at.second, at.alpha).sample(folded.u, disk.r2);
   }
   // The horizon itself has no cosine and is no direction of reflection.
   s.at.r = std::min(s.at.r, 1 - std::numeric_limits<T>::epsilon() / 2);
   if (folded.mirrored) s.at.phi = -s.at.phi;
-  return {polar_to_direction(s.at), s.pdf};
+  if (chart_ == Chart::outgoing) return {polar_to_direction(s.at), s.pdf};
+  const auto d = HalfVectorChart<T>(theta_i).direction(s.at);
+  return {d.wo, s.pdf / d.jacobian};
+}
+
+template <class T>
+typename Stack<T>::OnDisk Stack<T>::to_disk(T theta_i, const Vec3<T>& wo) const noexcept {
+  OnDisk d{{}, false, 1};
+  if (chart_ == Chart::outgoing) {
+    d.at = direction_to_polar(wo);
+  } else {
+    const auto point = HalfVectorChart<T>(theta_i).disk(wo);
+    d.at = point.at, d.jacobian = point.jacobian;
+  }
+  d.mirrored = half() && d.at.phi < 0;
+  if (d.at.phi < 0) d.at.phi = half() ? -d.at.phi : d.at.phi + 2 * pi<T>;
+  return d;
 }
 
 template <class T>
 T Stack<T>::pdf(T theta_i, const Vec3<T>& wo) const noexcept {
   if (!(wo.z >= 0)) return 0;
-  Polar<T> at = direction_to_polar(wo);
-  at.phi = half() ? std::abs(at.phi) : at.phi < 0 ? at.phi + 2 * pi<T> : at.phi;
+  const OnDisk d = to_disk(theta_i, wo);
   const Place p = place(theta_i);
-  if (p.alpha == 0) return pdf_one(p.first, at);
+  if (p.alpha == 0) return pdf_one(p.first, d.at) / d.jacobian;
   if (interpolation_ == Interpolation::mixture)
-    return (1 - p.alpha) * pdf_one(p.first, at) + p.alpha * pdf_one(p.second, at);
-  const auto inverse = Displacement<T>(p.first, p.second, p.alpha).invert(at);
-  return inverse ? inverse->pdf : T(0);
+    return ((1 - p.alpha) * pdf_one(p.first, d.at) + p.alpha * pdf_one(p.second, d.at)) / d.jacobian;
+  if (interpolation_ == Interpolation::blend)
+    return Blend<T>(p.first, p.second, p.alpha).pdf(d.at) / d.jacobian;
+  const auto inverse = Displacement<T>(p.first, p.second, p.alpha).invert(d.at);
+  return inverse ? inverse->pdf / d.jacobian : T(0);
 }
 
 template <class T>
 std::optional<SquareInverse<T>> Stack<T>::invert(T theta_i, const Vec3<T>& wo) const noexcept {
   if (!(wo.z >= 0)) return std::nullopt;
-  Polar<T> at = direction_to_polar(wo);
-  const bool mirrored = half() && at.phi < 0;
-  at.phi = half() ? std::abs(at.phi) : at.phi < 0 ? at.phi + 2 * pi<T> : at.phi;
+  const auto [at, mirrored, jacobian] = to_disk(theta_i, wo);
   const Place p = place(theta_i);
   PolarInverse<T> inverse;
   if (p.alpha == 0) {
@@ -151,6 +174,8 @@ std::optional<SquareInverse<T>> Stack<T>::invert(T theta_i, const Vec3<T>& wo) c
     inverse = first ? a : b;
     inverse.v = first ? std::max(std::min(v0, w0 - margin), T(0)) : std::max(v1, w0 + margin);
     inverse.pdf = w0 * a.pdf + p.alpha * b.pdf;
+  } else if (interpolation_ == Interpolation::blend) {
+    inverse = Blend<T>(p.first, p.second, p.alpha).invert(at);
   } else {
     const auto found = Displacement<T>(p.first, p.second, p.alpha).invert(at);
     if (!found) return std::nullopt;
@@ -158,7 +183,7 @@ std::optional<SquareInverse<T>> Stack<T>::invert(T theta_i, const Vec3<T>& wo) c
   }
   if (!(inverse.pdf > 0)) return std::nullopt;
   const DiskPoint<T> disk{unfold(inverse.u, mirrored, half()), std::min(inverse.v, T(1))};
-  return SquareInverse<T>{disk_to_square(disk), inverse.pdf};
+  return SquareInverse<T>{disk_to_square(disk), inverse.pdf / jacobian};
 }
 
 template <class T>
@@ -171,6 +196,7 @@ std::size_t Stack<T>::bytes() const noexcept {
 template <class T>
 StackGrid Stack<T>::grid() const {
   StackGrid grid;
+  grid.chart = chart_;
   grid.theta_i.assign(theta_i_.begin(), theta_i_.end());
   for (const Diagram<T>& d : diagrams_) grid.diagrams.push_back(d.grid());
   return grid;

@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
+#include <gonio/mapping/blend.h>
 #include <gonio/mapping/displacement.h>
+#include <gonio/mapping/half_vector.h>
 
 namespace gonio {
 
@@ -12,15 +14,28 @@ namespace gonio {
 enum class Interpolation {
   nearest,      ///< the diagram whose theta_i is closer; the pdf jumps half way between
   mixture,      ///< one of the two at random, by the weights; two half-height lobes, not coherent
-  displacement  ///< the images of (u, v) interpolated: one lobe that moves; see Displacement
+  displacement,  ///< the images of (u, v) interpolated: one lobe that moves; see Displacement
+  blend          ///< the densities interpolated, on lines that all diagrams share; see Blend
 };
 
+inline constexpr Interpolation interpolations[] = {Interpolation::nearest, Interpolation::mixture,
+                                                   Interpolation::displacement, Interpolation::blend};
 const char* to_string(Interpolation interpolation) noexcept;
+
+/// What the disk of a diagram stands for.
+enum class Chart {
+  outgoing,  ///< the hemisphere of outgoing directions, flattened: r = sqrt(1 - cos theta_o), phi of wo
+  half       ///< the half vectors that reflect wi to directions above the horizon; see HalfVectorChart
+};
+
+inline constexpr Chart charts[] = {Chart::outgoing, Chart::half};
+const char* to_string(Chart chart) noexcept;
 
 /// A stack of diagrams as data, in double: what a Stack is built from and a stack file holds.
 struct StackGrid {
   std::vector<double> theta_i;        ///< K >= 1 incident angles [rad], ascending, in [0, pi/2]
   std::vector<DiagramGrid> diagrams;  ///< one per angle, each with its own lines; all half or all full
+  Chart chart = Chart::outgoing;
 };
 
 template <class T>
@@ -37,7 +52,9 @@ struct SquareInverse {
 };
 
 /// Diagrams indexed by the incident angle, and the map between unit square and hemisphere for any
-/// angle: M_B of the concentric square, then M_C, M_D of the diagrams, interpolated, then M_E.
+/// angle: M_B of the concentric square, then M_C, M_D of the diagrams, interpolated, then M_E or, in the
+/// half-vector chart, HalfVectorChart. Densities of diagrams are per 2 r dr dphi of the disk, which is the
+/// solid angle of wo in the outgoing chart alone; those that come out are per solid angle in either.
 ///
 /// Angles outside the stack use its first or last diagram. Directions are in the frame of the
 /// diagram: x points along the azimuth of wi, so that the mirror direction is at phi = pi.
@@ -47,7 +64,7 @@ template <class T>
 class Stack {
  public:
   /// @throws Error if angles are not ascending in [0, pi/2], their number is not that of the
-  ///   diagrams, or a diagram is bad (see Diagram).
+  ///   diagrams, a diagram is bad (see Diagram), or, for `blend`, two have different lines.
   Stack(const StackGrid& grid, Interpolation interpolation);
 
   /// The direction of (u, v) in [0, 1]^2 and its pdf.
@@ -56,6 +73,7 @@ class Stack {
   /// The pdf of `wo` [1/sr]; integrates to 1 over the hemisphere; 0 for wo.z < 0. In float, of a draw,
   /// within 2e-3 of the returned pdf, relative, besides 1e-4 of the largest density. For `displacement`
   /// between diagrams this inverts the map (at most 2 max_root_steps evaluations, typically 8).
+  /// For `blend` it is one bilinear look-up of both diagrams.
   T pdf(T theta_i, const Vec3<T>& wo) const noexcept;
 
   /// The (u, v) that sample() maps to `wo`, with the pdf; empty for wo.z < 0 and where the density vanishes. A
@@ -64,9 +82,13 @@ class Stack {
   /// In float, where the density is at least 1e-6 of its largest value: sample() then invert() comes
   /// back to (u, v) within 1e-4 (not for mixtures); invert() then sample() to `wo` within 2e-4 in each
   /// component (mixtures: 1e-2), or as near as the floats u and v let it come where the map is steep.
+  /// In the half-vector chart these bounds hold for `blend` up to theta_i = 0.9, the last with 2e-3; beyond, a
+  /// float wo holds its half vector to 1 / cos theta_i ulp, and beside the horizon displacement may find no
+  /// way back.
   std::optional<SquareInverse<T>> invert(T theta_i, const Vec3<T>& wo) const noexcept;
 
   Interpolation interpolation() const noexcept { return interpolation_; }
+  Chart chart() const noexcept { return chart_; }
   const std::vector<T>& theta_i() const noexcept { return theta_i_; }
   const std::vector<Diagram<T>>& diagrams() const noexcept { return diagrams_; }
   std::size_t bytes() const noexcept;  ///< all memory held, this object included
@@ -82,7 +104,17 @@ class Stack {
   Place place(T theta_i) const noexcept;
   bool half() const noexcept { return diagrams_.front().azimuth() == Azimuth::half; }
 
+  /// A direction on the disk: at.phi folded into the stored azimuth; densities of the disk over those
+  /// per solid angle.
+  struct OnDisk {
+    Polar<T> at;
+    bool mirrored;
+    T jacobian;
+  };
+  OnDisk to_disk(T theta_i, const Vec3<T>& wo) const noexcept;
+
   Interpolation interpolation_;
+  Chart chart_;
   std::vector<T> theta_i_;
   std::vector<Diagram<T>> diagrams_;
 };

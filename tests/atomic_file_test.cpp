@@ -1,4 +1,4 @@
-#include <gonio/brdf/atomic_file.h>
+#include <gonio/mapping/atomic_file.h>
 #include <gonio/mapping/error.h>
 #include <gtest/gtest.h>
 

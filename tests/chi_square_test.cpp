@@ -52,6 +52,31 @@ TEST(ChiSquare, PIsUniform) {
   EXPECT_NEAR(low, 0.2 * repeats, 3 * std::sqrt(repeats * 0.16));
 }
 
+// The whole sphere: the bins meet at the equator, and each hemisphere has its own pole.
+TEST(ChiSquare, Sphere) {
+  const auto tilted = [](const glm::vec3& w) { return (1 + 0.5 * w.z) / (4 * pi<double>); };
+  const Bins sphere = Bins::adapted(tilted, 31, 31, Domain::sphere);
+  EXPECT_LT(sphere.index({0.6f, 0, -0.8f}), sphere.size());
+  EXPECT_NE(sphere.index({0.6f, 0, -0.8f}), sphere.index({0.6f, 0, 0.8f}));
+  Random random(3);
+  const auto run = [&](double slope) {
+    return chi_square(
+        [&](std::uint64_t) {
+          // The inverse of the cumulative of 1 + slope z.
+          const glm::vec2 u = random.pair();
+          const double z = (std::sqrt((1 - slope) * (1 - slope) + 4 * slope * u.x) - 1) / slope;
+          const double s = std::sqrt(std::max(1 - z * z, 0.0)), phi = 2 * pi<double> * u.y;
+          return glm::vec3(s * std::cos(phi), s * std::sin(phi), z);
+        },
+        tilted, sphere, draws);
+  };
+  const auto right = run(0.5), wrong = run(0.52);
+  EXPECT_TRUE(right.passed(0.01)) << right.summary();
+  EXPECT_NEAR(right.pdf_integral, 1, 1e-5);
+  EXPECT_FALSE(wrong.passed(0.01)) << wrong.summary();
+  EXPECT_THROW(Bins({-pi<double>, pi<double>}, {0, 1}, Domain::sphere), Error);
+}
+
 TEST(ChiSquare, NegativeControls) {
   Random random(1);
   const Draw draw = [&](std::uint64_t) { return draw_cosine(random); };

@@ -171,6 +171,16 @@ TEST_F(FitToolTest, ModelFilesAreInputs) {
   const glm::vec3 wi(0.6f, 0, 0.8f), wo(-0.48f, 0.36f, 0.8f);
   const glm::vec3 exact = model.eval(wi, wo), read = load_table(path("c.binary")).eval(wi, wo);
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(read[c], exact[c], 0.01f * exact[c]);
+  const std::string info = expect_ok("info fit.json");
+  for (const char* part : {"model of fitted lobes", "2 lobes, 1 of them specular", "ggx:alpha=0.4", "albedo"}) {
+    EXPECT_TRUE(contains(info, part)) << part << "\n" << info;
+  }
+  EXPECT_TRUE(contains(expect_ok("validate fit.json"), "fit.json: ok"));
+  std::ofstream(path("bright.json")) << to_json(parse_model("lambert:albedo=1.5"));
+  EXPECT_TRUE(contains(expect_ok("validate bright.json"), "warning: albedo"));
+  std::ofstream(path("cut.json")) << "{\"format\": \"gonio mod";
+  expect_error("validate cut.json", "unusable: cut.json");
+  expect_error("info cut.json", "cut.json: is not JSON");
   expect_error("convert fit.json d.binary --phi-d 360", "--phi-d");
   expect_error("convert fit.json d.binary --negative zero", "--negative");
   std::ofstream(path("broken.json")) << "{\"format\": \"gonio mod";
@@ -204,7 +214,7 @@ TEST_F(FitToolTest, ReportComparesLobesAndStacks) {
   }
   EXPECT_EQ(lobes, 3);
   EXPECT_GT(material["lobes_against_stack"]["equal_time_ratio"].get<double>(), 0);
-  EXPECT_TRUE(contains(read_bytes(path("report/report.md")), "As a sampler, for this material a "));
+  EXPECT_TRUE(contains(read_bytes(path("report/report.md")), "For this material a "));
 }
 
 }  // namespace

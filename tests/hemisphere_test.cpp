@@ -48,6 +48,14 @@ LinearityError linearity_error(double theta1, double theta2, double d1, double d
   return worst;
 }
 
+TEST(Hemisphere, RadiusToThetaInFloat) {
+  for (int k = 1; k <= 100000; ++k) {
+    const float r = static_cast<float>(k) / 100000;
+    ASSERT_NEAR(double(radius_to_theta(r)) / radius_to_theta(double(r)), 1, 2e-7) << r;
+  }
+  EXPECT_EQ(radius_to_theta(0.0f), 0.0f);
+}
+
 TEST(Hemisphere, LinearityErrorOfThePaper) {
   const LinearityError two = linearity_error(0, pi<double> / 2, 1, 0);
   EXPECT_NEAR(two.absolute, 0.0422, 1e-4);  // paper: 4.2 %

@@ -84,7 +84,23 @@ TEST_F(LightTool, ShowsAndMeasures) {
   EXPECT_NE(read("out").find("Every second angle left out"), std::string::npos);
   ASSERT_EQ(run("report in.ldt -o folder"), 0) << read("err");
   EXPECT_NE(read("folder/report.md").find("goniometric mapping, corrected"), std::string::npos);
-  EXPECT_NE(read("folder/report.json").find("\"lights\""), std::string::npos);
+  const std::string json = read("folder/report.json");
+  for (const char* key :
+       {"\"lights\"", "\"uniform\"", "\"texels\"", "\"r_linear\"", "\"gamma_linear\""})
+    EXPECT_NE(json.find(key), std::string::npos) << key;
+}
+
+// Radiometric files are not given in lumens.
+TEST_F(LightTool, UnitsAreThoseOfTheFile) {
+  Luminaire lamp = testing::lambertian();
+  lamp.unit = "mW/sr";
+  std::ofstream(folder_ / "uv.ies", std::ios::binary) << testing::ies_text(lamp);
+  ASSERT_EQ(run("light info uv.ies"), 0) << read("err");
+  EXPECT_NE(read("out").find("318.31 mW/sr at"), std::string::npos) << read("out");
+  EXPECT_NE(read("out").find("flux             999.97 mW,"), std::string::npos) << read("out");
+  EXPECT_EQ(read("out").find(" cd "), std::string::npos) << read("out");
+  ASSERT_EQ(run("light plot uv.ies uv.svg"), 0) << read("err");
+  EXPECT_NE(read("uv.svg").find("mW/sr, flux 1000 mW<"), std::string::npos);
 }
 
 TEST_F(LightTool, RefusesWithOneLine) {
@@ -92,6 +108,16 @@ TEST_F(LightTool, RefusesWithOneLine) {
   refused("light info bad.ies", "line 3: number of lamps");
   refused("light validate bad.ies in.ldt", "found 1 of 2 files unusable");
   refused("light info missing.ldt", "missing.ldt");
+  std::ofstream(folder_ / "empty.ies");
+  refused("light convert empty.ies x.ldt", "empty.ies", "x.ldt");
+  fs::create_directory(folder_ / "folder.ies");
+  refused("light convert folder.ies x.ldt", "folder.ies", "x.ldt");
+  std::ofstream(folder_ / "huge.ies") << "IESNA91\nTILT=NONE\n1 1000 1 1000000000 1000000000 1 2 0 "
+                                         "0 0\n1 1 10\n0 90\n0\n1 0\n";
+  refused("light convert huge.ies x.exr", "huge.ies: line 3: number of vertical angles", "x.exr");
+  const std::string whole = read("in.ldt");
+  std::ofstream(folder_ / "half.ldt", std::ios::binary) << whole.substr(0, whole.size() / 2);
+  refused("light convert half.ldt x.pbrt", "half.ldt", "x.pbrt.exr");
   refused("light convert in.ldt x.step", ".step", "x.step");
   refused("light convert in.ldt x.ies --filter bspline", "--filter", "x.ies");
   refused("light convert bad.ies x.exr", "line 3", "x.exr");

@@ -164,7 +164,8 @@ TEST_F(StackFileTest, RoundTripIsBitExact) {
   EXPECT_EQ(saved.colour.values(), loaded.colour.values());
   EXPECT_EQ(saved.name, loaded.name);
   EXPECT_EQ(saved.source, loaded.source);
-  EXPECT_EQ(saved.chart, loaded.chart);
+  EXPECT_EQ(saved.diagrams.chart, loaded.diagrams.chart);
+  EXPECT_EQ(saved.interpolation, loaded.interpolation);
   save_stack(path("b.exr"), loaded);
   EXPECT_EQ(read_bytes(path("a.exr")), read_bytes(path("b.exr")));
 }
@@ -301,8 +302,8 @@ using Parts = std::vector<RawPart>;
 const Fault faults[] = {
     {"Version", [](Parts& p) { p[0].header.insert("gonio:format", Imf::IntAttribute(2)); },
      "attribute gonio:format: found 2, expected 1"},
-    {"Chart", [](Parts& p) { p[0].header.insert("gonio:chart", Imf::StringAttribute("half")); },
-     "attribute gonio:chart: found half, expected outgoing"},
+    {"Chart", [](Parts& p) { p[0].header.insert("gonio:chart", Imf::StringAttribute("sideways")); },
+     "attribute gonio:chart: found sideways, expected one of outgoing, half"},
     {"NoName", [](Parts& p) { p[0].header = without(p[0].header, "gonio:name"); },
      "attribute gonio:name"},
     {"NoLines", [](Parts& p) { p[1].header = without(p[1].header, "gonio:phi"); },

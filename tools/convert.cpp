@@ -1,3 +1,4 @@
+#include <gonio/brdf/choose_stack.h>
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/brdf/sniff.h>
 #include <gonio/brdf/write.h>
@@ -23,6 +24,7 @@ struct Options {
   std::string in, out, grid;
   int n_phi_d = 360;
   StackOptions stack;
+  ChartChoice chart;
   CellPolicies policies;
 };
 
@@ -39,20 +41,37 @@ void refuse_policies(const CLI::App& verb, const std::string& why) {
   refuse(verb, {"--negative", "--nonfinite", "--missing"}, why);
 }
 
+/// What was built, the best first.
+std::string describe(const std::vector<RatedStack>& rated) {
+  std::string text;
+  for (const RatedStack& r : rated) {
+    char number[32];
+    std::snprintf(number, sizeof(number), "%.2g", r.relvar);
+    text += (text.empty() ? "chart " : "; not ") + std::string(to_string(r.grid.chart)) + ", " +
+            to_string(r.interpolation) + ": mean relvar " + number;
+  }
+  return text + " (2 to 80 degrees)";
+}
+
 void table_to_stack(const Options& options) {
   StackFile file;
+  std::string built;
   {
     ProgressLine progress("building the stack of " + options.in);
     const BrdfTable table = load_input(options.in, options.policies);
-    const Stack<float> stack(
-        build_stack(table, options.stack, [&](double share) { progress.update(share); }),
-        Interpolation::displacement);
+    const std::vector<RatedStack> rated =
+        choose_stack(table, options.chart.candidates(options.stack),
+                     [&](double share) { progress.update(share); });
+    built = describe(rated);
+    const Stack<float> stack(rated.front().grid, rated.front().interpolation);
     file.diagrams = stack.grid();
+    file.interpolation = stack.interpolation();
     file.colour = Colour::from_table(table, stack, colour_side);
     file.name = table.info().name;
     file.source = std::filesystem::path(options.in).filename().string();
   }
   save_stack(options.out, file);
+  std::printf("%s\n", built.c_str());
 }
 
 void convert_stack(const CLI::App& verb, const Options& options, const std::string& extension) {
@@ -61,7 +80,7 @@ void convert_stack(const CLI::App& verb, const Options& options, const std::stri
                 ": format: found a stack file, expected a table (MERL, RGL or MBSDF) to write " +
                 extension);
   }
-  refuse(verb, {"--incident", "--grid", "--bytes", "--tolerance", "--phi-d"},
+  refuse(verb, {"--chart", "--interpolation", "--incident", "--grid", "--bytes", "--tolerance", "--phi-d"},
          "a stack file keeps its diagrams");
   refuse_policies(verb, "a stack file has no such cells");
   save_stack(options.out, load_stack(options.in));
@@ -123,7 +142,7 @@ void convert(const CLI::App& verb, Options& options) {
     table_to_stack(options);
     return;
   }
-  refuse(verb, {"--incident", "--bytes", "--tolerance"}, "only a stack file has diagrams");
+  refuse(verb, {"--chart", "--interpolation", "--incident", "--bytes", "--tolerance"}, "only a stack file has diagrams");
   if (extension == ".binary") {
     refuse(verb, {"--grid"}, "the cells of MERL are fixed");
   }
@@ -154,6 +173,7 @@ void add_convert(CLI::App& app) {
                        std::to_string(stack.meridians) + "x" + std::to_string(stack.parallels) +
                        "]; .mbsdf: M thetas and N phis [90x180]")
       ->type_name("MxN");
+  add_chart_options(*verb, options->chart);
   add_stack_options(*verb, stack);
   verb->add_option("--phi-d", options->n_phi_d,
                    ".binary: bins of phi_d, 360 or 180; most other programs read 180 alone, which "
@@ -169,6 +189,7 @@ void add_convert(CLI::App& app) {
       "Examples:\n"
       "  gonio convert chrome.binary chrome.exr\n"
       "  gonio convert satin.bsdf small.exr --grid 16x16 --bytes 64KiB\n"
+      "  gonio convert satin.bsdf satin.exr --chart half\n"
       "  gonio convert satin.bsdf satin.binary\n"
       "  gonio convert satin.bsdf satin.mbsdf --grid 45x90\n"
       "  gonio convert fit.json fit.exr");

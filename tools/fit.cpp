@@ -1,6 +1,6 @@
-#include <gonio/brdf/atomic_file.h>
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/fitting/fit_json.h>
+#include <gonio/mapping/atomic_file.h>
 #include <gonio/mapping/error.h>
 #include <gonio/tools/fit.h>
 #include <gonio/tools/input.h>
@@ -9,6 +9,7 @@
 #include <gonio/tools/table_fits.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <iomanip>
@@ -97,8 +98,18 @@ void fit_one(const Options& options) {
       std::printf("%s %zu lobe%s %.3g", k > 0 ? "," : "", k + 1, k > 0 ? "s" : "",
                   fits.stages[k].errors.inside.relative_l1);
     }
-    std::printf("; chosen: %zu, the fewest within %.0f %% of the best\n", chosen + 1,
+    const double error = fits.stages[chosen].errors.inside.relative_l1;
+    std::printf("; chosen: %zu, the fewest within %.0f %% of the best", chosen + 1,
                 100 * (enough_factor - 1));
+    if (chosen + 1 < fits.stages.size()) {
+      double best = error;
+      for (const StageFit& s : fits.stages) best = std::min(best, s.errors.inside.relative_l1);
+      std::printf(" (more lobes lower the error by %.1f %% at most)", 100 * (1 - best / error));
+    } else {
+      std::printf(" (one lobe less has an error %.0f %% higher)",
+                  100 * (fits.stages[chosen - 1].errors.inside.relative_l1 / error - 1));
+    }
+    std::printf("\n");
   }
   const StageFit& stage = fits.stages[chosen];
   print_fit(options, stage, fits.seconds);
@@ -133,7 +144,7 @@ void fit_to_table(const Options& options) {
        << (options.fit.separate_channels ? "separate" : "shared")
        << ". Cosine-weighted RMS in 1/sr, log RMS as natural logarithm, relative L1 and albedo "
           "without unit, ΔE is CIEDE2000 of a lit sphere; each inside the cut-off, then beyond it. "
-          "The cost is what the fit minimises. Seconds are of all stages of a material together."
+          "The cost is what the fit minimises: more lobes never raise it, while the errors, which weigh differently, may rise a little. Seconds are of all stages of a material together."
           "\n\n| material | lobes | RMS | log RMS | L1 | albedo | ΔE | RMS beyond | log RMS beyond "
           "| L1 beyond | albedo beyond | ΔE beyond | cost | termination | s |\n|";
   for (int k = 0; k < 15; ++k) text << "---|";

@@ -1,7 +1,9 @@
 #include <gonio/brdf/albedo.h>
 #include <gonio/brdf/bytes.h>
 #include <gonio/brdf/exr/stack_file.h>
+#include <gonio/fitting/model.h>
 #include <gonio/tools/info.h>
+#include <gonio/tools/input.h>
 #include <gonio/tools/options.h>
 #include <gonio/tools/progress.h>
 
@@ -99,6 +101,19 @@ void print_table(const Options& options) {
   print_albedo([&](float theta_i) { return directional_albedo(table, theta_i); });
 }
 
+void print_model(const std::string& path) {
+  const LobeModel model = load_model(path);
+  print("name", model.name);
+  print("format", "model of fitted lobes");
+  print("size", std::to_string(model.lobes.size()) + " lobes, " +
+                    std::to_string(model.specular_count()) + " of them specular");
+  print("theta_i", "0 to 90");
+  print("file", bytes_text(regular_file_size(path)));
+  print("description", describe(model));
+  const BrdfTable table = load_input(path);
+  print_albedo([&](float theta_i) { return directional_albedo(table, theta_i); });
+}
+
 /// "3 to 40", or "3".
 template <class Size>
 std::string range(const std::vector<DiagramGrid>& diagrams, const Size& size) {
@@ -113,11 +128,12 @@ std::string range(const std::vector<DiagramGrid>& diagrams, const Size& size) {
 void print_stack(const std::string& path) {
   const StackFile file = load_stack(path);
   const std::vector<DiagramGrid>& diagrams = file.diagrams.diagrams;
-  const Stack<float> stack(file.diagrams, Interpolation::displacement);
+  const Stack<float> stack(file.diagrams, file.interpolation);
   print("name", file.name);
   print("format", "stack of diagrams, version " + std::to_string(stack_file_version));
   print("source", file.source);
-  print("chart", file.chart);
+  print("chart", to_string(file.diagrams.chart));
+  print("between", to_string(file.interpolation));
   print("size",
         std::to_string(diagrams.size()) + " diagrams of " +
             range(diagrams, [](const DiagramGrid& d) { return d.phi.size(); }) + " meridians x " +
@@ -133,7 +149,7 @@ void print_stack(const std::string& path) {
   print("colour", std::to_string(file.colour.side()) + " x " +
                       std::to_string(file.colour.side() / 2) + " cells per diagram, " +
                       bytes_text(file.colour.bytes()) + " in memory");
-  const Sampler sampler(file.diagrams, file.colour);
+  const Sampler sampler(file.diagrams, file.colour, file.interpolation);
   print_albedo([&](float theta_i) {
     constexpr int side = 128;
     const glm::vec3 wi(std::sin(theta_i), 0, std::cos(theta_i));
@@ -150,8 +166,8 @@ void print_stack(const std::string& path) {
 
 void add_info(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("info", "What a table or a stack file holds");
-  verb->add_option("FILE", options->file, "MERL, RGL or MBSDF table, or stack file (.exr)")
+  CLI::App* verb = app.add_subcommand("info", "What a table, a stack file or a fit holds");
+  verb->add_option("FILE", options->file, "MERL, RGL or MBSDF table, stack file (.exr), or fit.json")
       ->required();
   add_cell_policies(*verb, options->policies);
   verb->footer(
@@ -162,6 +178,8 @@ void add_info(CLI::App& app) {
   verb->callback([options] {
     if (is_exr(options->file)) {
       print_stack(options->file);
+    } else if (is_model_file(options->file)) {
+      print_model(options->file);
     } else {
       print_table(*options);
     }

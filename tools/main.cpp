@@ -2,7 +2,8 @@
 #include <gonio/tools/convert.h>
 #include <gonio/tools/fit.h>
 #include <gonio/tools/info.h>
-#include <gonio/tools/light.h>
+#include <gonio/tools/light/light.h>
+#include <gonio/tools/ndf.h>
 #include <gonio/tools/report/report.h>
 #include <gonio/tools/stability/stability.h>
 #include <gonio/tools/synth.h>
@@ -55,6 +56,7 @@ int main(int argc, char** argv) {
   gonio::add_fit(app);
   gonio::add_light(app);
   gonio::add_stability(app);
+  gonio::add_ndf(app);
   try {
     app.parse(argc, argv);
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {

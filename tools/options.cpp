@@ -40,6 +40,42 @@ void add_cell_policies(CLI::App& verb, CellPolicies& policies) {
   add("--missing", policies.missing, "Cells marked as not measured (MERL: negative)");
 }
 
+std::vector<StackOptions> ChartChoice::candidates(const StackOptions& size) const {
+  std::vector<StackOptions> result;
+  for (const Chart chart : charts) {
+    StackOptions options = size;
+    options.chart = chart;
+    options.interpolation = interpolation.value_or(
+        chart == Chart::half ? Interpolation::blend : Interpolation::displacement);
+    result.push_back(options);
+  }
+  return result;
+}
+
+void add_chart_options(CLI::App& verb, ChartChoice& choice) {
+  verb.add_option_function<std::string>(
+          "--chart",
+          [&choice](const std::string& text) {
+            if (text == "auto") return;
+            for (const Chart chart : charts) {
+              if (text == to_string(chart)) choice.charts = {chart};
+            }
+          },
+          "What diagrams tabulate: outgoing directions, half vectors, or what measures better")
+      ->check(CLI::IsMember({"outgoing", "half", "auto"}))
+      ->type_name("outgoing|half|auto")
+      ->default_str("auto");
+  verb.add_option_function<std::string>(
+          "--interpolation",
+          [&choice](const std::string& text) {
+            choice.interpolation =
+                text == "blend" ? Interpolation::blend : Interpolation::displacement;
+          },
+          "Between incident angles [displacement for outgoing, blend for half]")
+      ->check(CLI::IsMember({"displacement", "blend"}))
+      ->type_name("displacement|blend");
+}
+
 void add_stack_options(CLI::App& verb, StackOptions& stack) {
   const char* const group = "Size of a stack: it grows until one of these is met";
   verb.add_option("--incident", stack.incident, "At most this many incident angles")

@@ -5,6 +5,7 @@
 #include <CLI/App.hpp>
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +18,18 @@ void add_cell_policies(CLI::App& verb, CellPolicies& policies);
 
 /// "zero", "fill" or "reject".
 const char* to_string(CellPolicy policy) noexcept;
+
+/// The charts that --chart asks for: one, or both for `auto`.
+/// `choice` must outlive the parsing.
+struct ChartChoice {
+  std::vector<Chart> charts{Chart::outgoing, Chart::half};
+  std::optional<Interpolation> interpolation;  ///< of --interpolation
+
+  /// What is to be built: in each chart with the interpolation asked for, or the one that suits the
+  /// chart, displacement for outgoing and blend for half.
+  std::vector<StackOptions> candidates(const StackOptions& size) const;
+};
+void add_chart_options(CLI::App& verb, ChartChoice& choice);
 
 /// The options --incident, --bytes and --tolerance of a verb that builds stacks.
 /// `stack` must outlive the parsing.

@@ -1,7 +1,10 @@
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/brdf/sniff.h>
+#include <gonio/brdf/albedo.h>
 #include <gonio/brdf/validate.h>
+#include <gonio/fitting/model.h>
 #include <gonio/mapping/error.h>
+#include <gonio/tools/input.h>
 #include <gonio/tools/progress.h>
 #include <gonio/tools/validate.h>
 
@@ -23,7 +26,7 @@ void check_name(const std::filesystem::path& path, const std::string& expected,
   std::string found = path.extension().string();
   for (char& c : found) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   const bool promises =
-      found == ".binary" || found == ".bsdf" || found == ".mbsdf" || found == ".exr";
+      found == ".binary" || found == ".bsdf" || found == ".mbsdf" || found == ".exr" || found == ".json";
   if (promises && found != expected)
     problems.push_back({"extension", found, expected + " for what the file holds", true});
 }
@@ -72,11 +75,40 @@ std::vector<Problem> check_stack(const std::filesystem::path& path) {
   return problems;
 }
 
+std::vector<Problem> check_model(const std::filesystem::path& path) {
+  std::vector<Problem> problems;
+  try {
+    const BrdfTable table = load_input(path);
+    double largest = 0, where = 0;
+    for (double degrees = 5; degrees <= 85; degrees += 10) {
+      const glm::vec3 albedo =
+          directional_albedo(table, static_cast<float>(degrees * pi<double> / 180));
+      for (int c = 0; c < 3; ++c) {
+        if (static_cast<double>(albedo[c]) <= largest) continue;
+        largest = static_cast<double>(albedo[c]);
+        where = degrees;
+      }
+    }
+    if (largest > 1) {
+      problems.push_back({"albedo", number(largest) + " at " + number(where) + " degrees",
+                          "at most 1, or it reflects more than it receives", false});
+    }
+  } catch (const Error& error) {
+    problems.push_back({"model", text_of(error, path), "one that loads", true});
+  }
+  return problems;
+}
+
 std::vector<Problem> check_file(const std::filesystem::path& path) {
   std::vector<Problem> problems;
   if (is_exr(path)) {
     problems = check_stack(path);
     check_name(path, ".exr", problems);
+    return problems;
+  }
+  if (is_model_file(path)) {
+    problems = check_model(path);
+    check_name(path, ".json", problems);
     return problems;
   }
   problems = validate_table(path);
@@ -117,8 +149,8 @@ bool report(const std::string& path) {
 
 void add_validate(CLI::App& app) {
   auto files = std::make_shared<std::vector<std::string>>();
-  CLI::App* verb = app.add_subcommand("validate", "Every problem of tables and stack files");
-  verb->add_option("FILE", *files, "MERL, RGL or MBSDF tables, or stack files (.exr)")->required();
+  CLI::App* verb = app.add_subcommand("validate", "Every problem of tables, stack files and fits");
+  verb->add_option("FILE", *files, "MERL, RGL or MBSDF tables, stack files (.exr), or fit.json")->required();
   verb->footer(
       "Prints a line for each problem: an error makes the file unusable, a warning does not.\n"
       "Exit status: 1 if a file is unusable.\n\n"

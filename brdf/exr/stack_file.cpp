@@ -20,11 +20,10 @@
 #include <algorithm>
 #include <cstring>
 #include <fstream>
-#include <map>
 #include <vector>
 
-#include <gonio/brdf/atomic_file.h>
-#include <gonio/brdf/bytes.h>
+#include <gonio/brdf/exr/check_attributes.h>
+#include <gonio/mapping/atomic_file.h>
 #include <gonio/mapping/error.h>
 
 namespace gonio {
@@ -73,6 +72,19 @@ Value attribute(const std::string& file, const Imf::Header& header, const char* 
   return found->value();
 }
 
+/// One of the values that have a name; `absent` for files that are older than the attribute.
+template <class Value, std::size_t N>
+Value choice(const std::string& file, const Imf::Header& header, const char* name, const Value (&known)[N], Value absent) {
+  if (header.find(name) == header.end()) return absent;
+  const std::string found = attribute<Imf::StringAttribute, std::string>(file, header, name);
+  std::string expected;
+  for (const Value value : known) {
+    if (found == to_string(value)) return value;
+    expected += (expected.empty() ? "" : ", ") + std::string(to_string(value));
+  }
+  fail(file, std::string("attribute ") + name, found, "one of " + expected);
+}
+
 std::vector<float> read_pixels(const std::string& file, Imf::MultiPartInputFile& input, int k, int width,
                                int height, const std::vector<std::string>& channels) {
   const Imf::Header& header = input.header(k);
@@ -101,47 +113,6 @@ int checked_size(const std::string& file, const std::string& field, std::size_t 
   return static_cast<int>(size);
 }
 
-/// Bytes that OpenEXR reads for a type whatever the size that the file gives; 0 for other types.
-std::size_t fixed_size(const std::string& type) {
-  static const std::map<std::string, std::size_t> sizes{
-      {"box2f", 16},        {"box2i", 16},   {"chromaticities", 32}, {"compression", 1}, {"deepImageState", 1},
-      {"double", 8},        {"envmap", 1},   {"float", 4},           {"int", 4},         {"keycode", 28},
-      {"lineOrder", 1},     {"m33f", 36},    {"m33d", 72},           {"m44f", 64},       {"m44d", 128},
-      {"rational", 8},      {"tiledesc", 9}, {"timecode", 8},        {"v2f", 8},         {"v2i", 8},
-      {"v2d", 16},          {"v3f", 12},     {"v3i", 12},            {"v3d", 24}};
-  const auto found = sizes.find(type);
-  return found == sizes.end() ? 0 : found->second;
-}
-
-/// Refuses attributes that claim more bytes than the file has, or another size than their type: OpenEXR
-/// allocates and clears what they claim, up to 2 GB each, before it finds out. Everything else is
-/// left for OpenEXR to judge.
-void check_attribute_sizes(const std::string& file) {
-  const std::string bytes = read_bytes(file);
-  const auto end_of_text = [&](std::size_t at) { return bytes.find('\0', at); };
-  std::size_t at = 8;  // magic number, version
-  while (at < bytes.size()) {
-    if (bytes[at] == '\0') {  // the end of a header; of a multi-part file, another may follow
-      if (++at >= bytes.size() || bytes[at] == '\0') return;
-      continue;
-    }
-    const std::size_t name = end_of_text(at);
-    const std::size_t type = name == std::string::npos ? name : end_of_text(name + 1);
-    std::int32_t size = 0;
-    if (type == std::string::npos || bytes.size() - type < 1 + sizeof(size)) return;
-    std::memcpy(&size, bytes.data() + type + 1, sizeof(size));
-    const std::size_t first = type + 1 + sizeof(size);
-    if (size < 0 || static_cast<std::size_t>(size) > bytes.size() - first)
-      fail(file, "attribute " + bytes.substr(at, std::min<std::size_t>(name - at, 64)), std::to_string(size) + " bytes",
-           "at most the " + std::to_string(bytes.size() - first) + " that follow");
-    const std::size_t fixed = fixed_size(bytes.substr(name + 1, type - name - 1));
-    if (fixed != 0 && static_cast<std::size_t>(size) != fixed)
-      fail(file, "attribute " + bytes.substr(at, std::min<std::size_t>(name - at, 64)), std::to_string(size) + " bytes",
-           std::to_string(fixed) + " for its type");
-    at = first + static_cast<std::size_t>(size);
-  }
-}
-
 StackFile load(const std::string& file) {
   check_attribute_sizes(file);
   Imf::MultiPartInputFile input(file.c_str(), 1);
@@ -155,8 +126,8 @@ StackFile load(const std::string& file) {
          std::to_string(stack_file_version) + " (a stack file of this library)");
   result.name = attribute<Imf::StringAttribute, std::string>(file, first, "gonio:name");
   result.source = attribute<Imf::StringAttribute, std::string>(file, first, "gonio:source");
-  result.chart = attribute<Imf::StringAttribute, std::string>(file, first, "gonio:chart");
-  if (result.chart != "outgoing") fail(file, "attribute gonio:chart", result.chart, "outgoing");
+  result.diagrams.chart = choice(file, first, "gonio:chart", charts, Chart::outgoing);
+  result.interpolation = choice(file, first, "gonio:interpolation", interpolations, Interpolation::displacement);
 
   for (int k = 0; k < input.parts(); ++k) {
     const Imf::Header& header = input.header(k);
@@ -218,8 +189,9 @@ void save_stack(const std::filesystem::path& path, const StackFile& file) {
   first.insert("gonio:version", Imf::StringAttribute(GONIO_VERSION));
   first.insert("gonio:name", Imf::StringAttribute(file.name));
   first.insert("gonio:source", Imf::StringAttribute(file.source));
-  first.insert("gonio:chart", Imf::StringAttribute(file.chart));
-  first.insert("gonio:units", Imf::StringAttribute("pdf per solid angle in 1/sr; angles in radians; r = sqrt(1 - cos theta)"));
+  first.insert("gonio:chart", Imf::StringAttribute(to_string(file.diagrams.chart)));
+  first.insert("gonio:interpolation", Imf::StringAttribute(to_string(file.interpolation)));
+  first.insert("gonio:units", Imf::StringAttribute("pdf per 2 r dr dphi in 1/sr; angles in radians"));
   first.insert("gonio:layout", Imf::StringAttribute("one part per incident angle: columns r, rows phi in 0..pi, mirrored"));
 
   // To memory first: OpenEXR finishes its files in destructors, where a full disk goes unnoticed.
@@ -251,7 +223,7 @@ StackFile load_stack(const std::filesystem::path& path) {
   try {
     StackFile file = load(path.string());
     // What cannot be sampled is refused here, with the name of the file.
-    const Stack<float> usable(file.diagrams, Interpolation::displacement);
+    const Stack<float> usable(file.diagrams, file.interpolation);
     return file;
   } catch (const Error& e) {
     const std::string what = e.what();
@@ -273,7 +245,7 @@ bool is_exr(const std::filesystem::path& path) {
 Sampler load_sampler(const std::filesystem::path& path) {
   StackFile file = load_stack(path);
   if (file.colour.empty()) fail(path.string(), "part colour", "none", "one (a self-contained stack)");
-  return Sampler(file.diagrams, std::move(file.colour));
+  return Sampler(file.diagrams, std::move(file.colour), file.interpolation);
 }
 
 }  // namespace gonio

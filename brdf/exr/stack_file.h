@@ -10,11 +10,12 @@ namespace gonio {
 /// A stack of diagrams as an OpenEXR file, readable by any viewer of multi-part images. The layout
 /// is described in docs/stack-file.md.
 struct StackFile {
-  StackGrid diagrams;   ///< densities normalised, per solid angle [1/sr]
+  StackGrid diagrams;   ///< with their chart; densities normalised
   Colour colour;        ///< empty if the file has none; such a file needs its table for f_r
   std::string name;     ///< of the material
   std::string source;   ///< file the stack was made of, without its folder; empty if unknown
-  std::string chart = "outgoing";  ///< what the diagrams tabulate: the outgoing direction
+  /// What the diagrams were built for; nearest and mixture can always be used instead.
+  Interpolation interpolation = Interpolation::displacement;
 };
 
 /// Version of the layout that save_stack() writes; load_stack() reads this one only.

@@ -17,7 +17,19 @@ constexpr double node5[5] = {0.046910077030668, 0.230765344947158, 0.5, 0.769234
 constexpr double weight5[5] = {0.118463442528095, 0.239314335249683, 0.284444444444444, 0.239314335249683,
                                0.118463442528095};
 
-glm::vec3 direction(double phi, double r) { return glm::vec3(polar_to_direction(Polar<double>{r, phi})); }
+/// The radius from the nearer pole: r beyond the equator runs from 1 to 2.
+double from_pole(double r) { return r > 1 ? 2 - r : r; }
+
+glm::vec3 direction(double phi, double r) {
+  glm::dvec3 w = polar_to_direction(Polar<double>{from_pole(r), phi});
+  if (r > 1) w.z = -w.z;
+  return glm::vec3(w);
+}
+
+/// The share of solid angle up to r, in units of the hemisphere.
+double area_to(double r) { return r > 1 ? 2 - (2 - r) * (2 - r) : r * r; }
+
+double end_of(Domain domain) { return domain == Domain::sphere ? 2 : 1; }
 
 double magnitude(double x) { return std::abs(x); }
 double magnitude(const glm::dvec3& x) { return std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)}); }
@@ -31,7 +43,7 @@ Value gauss(const Cell& c, const double* node, const double* weight, int points,
   Value sum(0);
   for (int a = 0; a < points; ++a) {
     const double r = c.r0 + node[a] * (c.r1 - c.r0);
-    const double ring = weight[a] * 2 * r * (c.r1 - c.r0) * (c.phi1 - c.phi0);
+    const double ring = weight[a] * 2 * from_pole(r) * (c.r1 - c.r0) * (c.phi1 - c.phi0);
     for (int b = 0; b < points; ++b)
       sum += ring * weight[b] * Value(function(direction(c.phi0 + node[b] * (c.phi1 - c.phi0), r)));
   }
@@ -91,25 +103,26 @@ void check(const std::vector<double>& edges, double first, double last, const ch
 
 }  // namespace
 
-Bins::Bins(std::vector<double> phi, std::vector<double> r) : phi_(std::move(phi)), r_(std::move(r)) {
+Bins::Bins(std::vector<double> phi, std::vector<double> r, Domain domain)
+    : phi_(std::move(phi)), r_(std::move(r)), domain_(domain) {
   check(phi_, -pi<double>, pi<double>, "phi");
-  check(r_, 0, 1, "r");
+  check(r_, 0, end_of(domain), "r");
 }
 
-Bins Bins::adapted(const Density& density, int n_phi, int n_r) {
+Bins Bins::adapted(const Density& density, int n_phi, int n_r, Domain domain) {
   const auto uniform = [](double first, double last, std::size_t cells) {
     std::vector<double> x(cells + 1);
     for (std::size_t k = 0; k <= cells; ++k)
       x[k] = first + (last - first) * static_cast<double>(k) / static_cast<double>(cells);
     return x;
   };
-  std::vector<double> phi = uniform(-pi<double>, pi<double>, 95), r = uniform(0, 1, 127);
+  std::vector<double> phi = uniform(-pi<double>, pi<double>, 95), r = uniform(0, end_of(domain), 127);
   for (int round = 0; round < 3; ++round) {
     const std::size_t m = phi.size() - 1, n = r.size() - 1;
     Profile across{std::vector<double>(m), std::vector<double>(m, 0.0), std::vector<double>(m, 0.0)};
     Profile along{std::vector<double>(n), std::vector<double>(n, 0.0), std::vector<double>(n, 0.0)};
     for (std::size_t i = 0; i < m; ++i) across.area[i] = phi[i + 1] - phi[i];
-    for (std::size_t j = 0; j < n; ++j) along.area[j] = r[j + 1] * r[j + 1] - r[j] * r[j];
+    for (std::size_t j = 0; j < n; ++j) along.area[j] = area_to(r[j + 1]) - area_to(r[j]);
     std::vector<double> value(m * n);
     for (std::size_t i = 0; i < m; ++i) {
       for (std::size_t j = 0; j < n; ++j) {
@@ -133,12 +146,14 @@ Bins Bins::adapted(const Density& density, int n_phi, int n_r) {
     r = spread(r, along, last ? static_cast<std::size_t>(n_r) : n);
     phi = std::move(next_phi);
   }
-  return Bins(std::move(phi), std::move(r));
+  return Bins(std::move(phi), std::move(r), domain);
 }
 
 std::size_t Bins::index(const glm::vec3& w) const noexcept {
-  if (!(w.z >= 0)) return size();
-  const Polar<float> p = direction_to_polar(w);  // w has no more digits
+  const bool below = w.z < 0;
+  if (std::isnan(w.z) || (below && domain_ == Domain::hemisphere)) return size();
+  Polar<float> p = direction_to_polar(glm::vec3(w.x, w.y, std::abs(w.z)));  // w has no more digits
+  if (below) p.r = 2 - p.r;
   const auto cell = [](const std::vector<double>& edges, double x) {
     const auto above = std::upper_bound(edges.begin() + 1, edges.end() - 1, x);
     return static_cast<std::size_t>(above - edges.begin()) - 1;

@@ -8,7 +8,7 @@
 #include <ostream>
 #include <sstream>
 
-#include <gonio/brdf/atomic_file.h>
+#include <gonio/mapping/atomic_file.h>
 #include <gonio/mapping/hemisphere.h>
 
 namespace gonio::proof {
@@ -83,7 +83,7 @@ void write_chi_square_plot(const std::string& path, const Bins& bins, const ChiS
         << "</text>\n<text x=\"10\" y=\"38\" font-size=\"11\">" << result.summary() << "</text>\n";
     const char* captions[3] = {"expected", "observed", "(observed - expected) / sigma: blue -4, red +4"};
     for (int panel = 0; panel < 3; ++panel) {
-      const double cx = 160 + 320 * panel, cy = 205, scale = 145;
+      const double cx = 160 + 320 * panel, cy = 205, scale = 145 / r.back();
       out << "<text x=\"" << cx << "\" y=\"365\" text-anchor=\"middle\" font-size=\"11\">" << captions[panel] << "</text>\n";
       for (std::size_t k = 0; k < bins.size(); ++k) {
         const double expected = result.expected[k], observed = static_cast<double>(result.observed[k]);

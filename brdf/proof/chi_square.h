@@ -15,10 +15,10 @@ struct ChiSquare {
   double p = 0;              ///< probability of a statistic at least as large if the draws follow the pdf
   double statistic = 0;
   int degrees_of_freedom = 0;
-  double pdf_integral = 0;   ///< over the hemisphere, by quadrature: no draw is involved
+  double pdf_integral = 0;   ///< over the domain of the bins, by quadrature: no draw is involved
   std::uint64_t draws = 0;   ///< all of them
   std::uint64_t empty = 0;   ///< draws without a direction
-  std::uint64_t outside = 0; ///< draws below the horizon or with a component that is not finite
+  std::uint64_t outside = 0; ///< draws outside the domain or with a component that is not finite
   std::uint64_t where_zero = 0;  ///< draws in cells over which the pdf is 0
   std::vector<double> expected;       ///< per cell of the bins, for the draws that have a direction
   std::vector<std::uint64_t> observed;  ///< per cell of the bins
@@ -41,7 +41,7 @@ ChiSquare chi_square(const Draw& draw, const Density& pdf, const Bins& bins, std
 /// nothing is wrong (Sidak).
 double sidak(double overall, int tests);
 
-/// Writes a self-contained SVG of three panels over the flattened hemisphere (x = r cos phi, y = r sin
+/// Writes a self-contained SVG of three panels over the flattened hemisphere or sphere (x = r cos phi, y = r sin
 /// phi): pdf, histogram, and their difference in standard deviations. For looking at a failure.
 void write_chi_square_plot(const std::string& path, const Bins& bins, const ChiSquare& result,
                            const std::string& title);

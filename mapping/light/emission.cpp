@@ -84,7 +84,7 @@ class TexelTable {
 };
 
 template <class Draw>
-EmissionQuality measure(std::string method, int draws, const Draw& draw) {
+EmissionQuality measure(std::string id, std::string method, int draws, const Draw& draw) {
   std::mt19937 random(20030625);
   std::uniform_real_distribution<double> uniform(0, 1);
   std::vector<double> u, v;
@@ -101,7 +101,7 @@ EmissionQuality measure(std::string method, int draws, const Draw& draw) {
   double mean = 0, square = 0;
   for (double w : weight) mean += w / count;
   for (double w : weight) square += (w - mean) * (w - mean) / count;
-  return {std::move(method), mean, mean > 0 ? square / (mean * mean) : 0,
+  return {std::move(id), std::move(method), mean, mean > 0 ? square / (mean * mean) : 0,
           seconds.count() / count * 1e9};
 }
 
@@ -127,22 +127,22 @@ std::vector<EmissionQuality> emission_quality(const LightDiagram& diagram, int d
   const double solid_angle = 2 * pi<double> * (z_from - z_to);
   const TexelTable table(diagram, 180, 360);
   return {
-      measure("uniform over the lit sphere or hemisphere", draws,
+      measure("uniform", "uniform over the lit sphere or hemisphere", draws,
               [&](double u, double v) {
                 const double gamma = std::acos(std::clamp(z_from + v * (z_to - z_from), -1.0, 1.0));
                 return diagram.intensity(LightAngles{2 * pi<double> * u, gamma}) * solid_angle;
               }),
-      measure("cumulative table of 1-degree texels", draws,
+      measure("texels", "cumulative table of 1-degree texels", draws,
               [&](double u, double v) {
                 const auto d = table.sample(u, v);
                 return d.pdf > 0 ? diagram.intensity(d.angles) / d.pdf : 0.0;
               }),
-      measure("goniometric mapping, linear in r", draws,
+      measure("r_linear", "goniometric mapping, linear in r", draws,
               [&](double u, double v) {
                 const auto s = sampler.sample(static_cast<float>(u), static_cast<float>(v));
                 return s.pdf > 0 ? sampler.mapped_flux() : 0.0;
               }),
-      measure("goniometric mapping, corrected to linear in gamma", draws,
+      measure("gamma_linear", "goniometric mapping, corrected to linear in gamma", draws,
               [&](double u, double v) {
                 return double(sampler.sample(static_cast<float>(u), static_cast<float>(v)).weight);
               }),

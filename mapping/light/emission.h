@@ -91,7 +91,8 @@ extern template class EmissionSampler<double>;
 
 /// How well and how fast emission is sampled by one method.
 struct EmissionQuality {
-  std::string method;
+  std::string id;               ///< "uniform", "texels", "r_linear", "gamma_linear"
+  std::string method;           ///< the same in words
   double flux;                  ///< mean weight [lm]
   double relvar;                ///< Var[w] / E[w]^2, w the weight of a draw
   double nanoseconds_per_draw;  ///< direction, pdf and weight, on this machine

@@ -13,9 +13,10 @@ namespace {
 std::string read_text(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw Error(path.string() + ": cannot be opened");
+  if (std::filesystem::is_directory(path))  // its stream opens, and throws what names no file
+    throw Error(path.string() + ": found a folder, expected a file");
   std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  if (stream.bad() || std::filesystem::is_directory(path))
-    throw Error(path.string() + ": cannot be read");
+  if (stream.bad()) throw Error(path.string() + ": cannot be read");
   return text;
 }
 

@@ -90,6 +90,13 @@ std::optional<double> efficacy(const Luminaire& light) {
   return flux(light.diagram) / light.watts;
 }
 
+std::string flux_unit(const Luminaire& luminaire) {
+  const std::string& unit = luminaire.unit;
+  if (unit == "cd") return "lm";
+  const std::size_t per = unit.rfind("/sr");
+  return per != std::string::npos && per + 3 == unit.size() ? unit.substr(0, per) : unit + " sr";
+}
+
 LightDiagram normalised(LightDiagram diagram, LightNormalisation mode, double target) {
   if (mode == LightNormalisation::none) return diagram;
   const double now = mode == LightNormalisation::flux ? flux(diagram) : max_intensity(diagram);

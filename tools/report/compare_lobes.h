@@ -9,7 +9,8 @@ namespace gonio {
 /// What fitted lobes cost as samplers of the table, beside stacks. Relative variances are means
 /// over the report's angles up to 70 degrees.
 struct LobeComparison {
-  std::string lobes;       ///< the method with the least time x variance
+  /// The fewest lobes that are enough; if none are, those with the least time x variance.
+  std::string lobes;
   double samples = 0;      ///< its variance over that of `displacement`
   double equal_time = 0;   ///< its time x variance over that of `displacement`
   double equal_bytes = 0;  ///< its variance over that of `displacement_small`

@@ -122,8 +122,8 @@ class Path {
  private:
   template <class Place>
   std::optional<Point> add_step(const Place& place, float t0, const std::optional<Point>& from, float t1, int depth) {
-    constexpr int deepest = 10;
-    constexpr double far = 70;
+    constexpr int deepest = 14;
+    constexpr double far = 80;
     const std::optional<Point> to = place(t1);
     if (!from || !to) {
       drawing_ = false;
@@ -141,9 +141,12 @@ class Path {
   }
 
   void draw(const Point& to) {
+    constexpr double near = 5;  // half a percent cannot be seen
     if (!drawing_) {
       text_ << 'M' << to.x << ',' << to.y;
-    } else if (to.x != last_.x || to.y != last_.y) {
+    } else if (std::hypot(to.x - last_.x, to.y - last_.y) < near) {
+      return;
+    } else {
       text_ << 'l' << to.x - last_.x << ',' << to.y - last_.y;
     }
     last_ = to;

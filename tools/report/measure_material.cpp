@@ -12,6 +12,7 @@
 #include <gonio/tools/report/timing.h>
 
 #include <gonio/brdf/baseline.h>
+#include <gonio/brdf/choose_stack.h>
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/brdf/parallel.h>
 #include <gonio/fitting/fit_json.h>
@@ -129,18 +130,51 @@ std::size_t add_lobes(const std::shared_ptr<const BrdfTable>& table, MaterialRep
   return bytes;
 }
 
-/// A stack of about that many bytes: seven angles with as many lines as fit.
+/// A stack of about that many bytes: at least seven angles, with as many lines as fit.
 void add_small_stack(const std::shared_ptr<const BrdfTable>& table, std::size_t bytes, Bench& bench) {
   const auto start = Clock::now();
   std::shared_ptr<const Sampler> sampler;
-  for (const int side : {16, 12, 8, 6, 5, 4}) {
+  for (const int side : {4, 5, 6, 8, 12, 16}) {  // upwards: those that do not fit take longest to build
     StackOptions options;
     options.meridians = options.parallels = side;
     options.bytes = bytes;
-    sampler = std::make_shared<const Sampler>(table, build_stack(*table, options));
-    if (sampler->bytes() <= bytes) break;
+    const auto larger = std::make_shared<const Sampler>(table, build_stack(*table, options));
+    if (sampler && larger->bytes() > bytes) break;
+    sampler = larger;
   }
   bench.add<Sampler>("displacement_small", "outgoing", stack_params(sampler->stack()), seconds_since(start), sampler);
+}
+
+/// The half-vector chart, with both continuous interpolations, at the limits of the other stacks.
+void add_half_stacks(const std::shared_ptr<const BrdfTable>& table, StackOptions options, Bench& bench,
+                     const Progress& progress) {
+  options.chart = Chart::half;
+  double before = 0;
+  for (const Interpolation interpolation : {Interpolation::displacement, Interpolation::blend}) {
+    options.interpolation = interpolation;
+    const auto start = Clock::now();
+    const auto sampler = std::make_shared<const Sampler>(table, options, [&](double done) { progress(before + done / 2); });
+    bench.add<Sampler>(to_string(interpolation), "half", stack_params(sampler->stack()), seconds_since(start), sampler);
+    before += 0.5;
+  }
+}
+
+/// Says in the params which stack `gonio convert --chart auto` takes: the one with the smaller mean
+/// relvar at rating_angles.
+void mark_choice(std::vector<MethodReport>& methods) {
+  MethodReport* best = nullptr;
+  double least = 0;
+  for (MethodReport& m : methods) {
+    const bool candidate = (m.id == "displacement" && m.chart == "outgoing") || (m.id == "blend" && m.chart == "half");
+    if (!candidate) continue;
+    double mean = 0;
+    for (const auto& q : m.angles)
+      if (q.theta_i < 80.5 * pi<double> / 180) mean += q.relvar / std::size(rating_angles);
+    m.params["mean_relvar"] = mean;
+    m.params["chart_auto"] = false;
+    if (!best || mean < least) best = &m, least = mean;
+  }
+  if (best) best->params["chart_auto"] = true;
 }
 
 MaterialReport measure_stack_file(const std::filesystem::path& path, const Progress& progress) {
@@ -152,7 +186,7 @@ MaterialReport measure_stack_file(const std::filesystem::path& path, const Progr
   nlohmann::json params = stack_params(sampler->stack());
   params["self_contained"] = true;
   Bench bench;
-  bench.add<Sampler>("displacement", file.chart, params, build.count(), sampler);
+  bench.add<Sampler>(to_string(file.interpolation), to_string(file.diagrams.chart), params, build.count(), sampler);
   bench.run(material, progress);
   material.stack = sampler->stack();
   return material;
@@ -166,9 +200,9 @@ MaterialReport measure_material(const std::filesystem::path& path, const ReportO
   const auto table = std::make_shared<const BrdfTable>(load_input(path, options.policies));
   MaterialReport material{table->info().name, table->info().source, table->info().format, table->info().source_bytes, {}};
 
-  constexpr double building = 0.3;  // its share of the progress
+  constexpr double building = 0.4;  // its share of the progress
   const auto start = std::chrono::steady_clock::now();
-  const StackGrid grid = build_stack(*table, options.stack, [&](double done) { progress(building * done); });
+  const StackGrid grid = build_stack(*table, options.stack, [&](double done) { progress(building / 3 * done); });
   const std::chrono::duration<double> build = std::chrono::steady_clock::now() - start;
 
   Bench bench;
@@ -181,9 +215,11 @@ MaterialReport measure_material(const std::filesystem::path& path, const ReportO
     const auto sampler = std::make_shared<const Sampler>(table, grid, interpolation);
     bench.add<Sampler>(to_string(interpolation), "outgoing", stack_params(sampler->stack()), build.count(), sampler);
   }
+  add_half_stacks(table, options.stack, bench, [&](double done) { progress(building * (1 + 2 * done) / 3); });
   if (const std::size_t bytes = add_lobes(table, material, bench); bytes > 0)
     add_small_stack(table, bytes, bench);
   bench.run(material, [&](double done) { progress(building + (1 - building) * done); });
+  mark_choice(material.methods);
   material.stack.emplace(grid, Interpolation::displacement);
   return material;
 }

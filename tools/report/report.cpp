@@ -21,7 +21,7 @@ namespace {
 LightReport measure_light(const std::filesystem::path& path) {
   Deviations ignored;
   const Luminaire light = load_any_light(path, {}, ignored);
-  return {path.stem().string(), path.filename().string(), light.format, flux(light.diagram), emission_quality(light.diagram)};
+  return {path.stem().string(), path.string(), light.format, std::filesystem::file_size(path), flux(light.diagram), emission_quality(light.diagram)};
 }
 
 }  // namespace
@@ -47,8 +47,8 @@ void add_report(CLI::App& app) {
   add_stack_options(*verb, options->report.stack);
   add_cell_policies(*verb, options->report.policies);
   verb->footer(
-      "Angles 2, 10, 30, 50, 70, 80 and 85 degrees. Methods: uniform, cosine, nearest, mixture, displacement,\n"
-      "for RGL files rgl, the format's own warps; lobes1, lobes2 and lobes3, fitted GGX lobes; and\n"
+      "Angles 2, 10, 30, 50, 70, 80 and 85 degrees. Methods: uniform, cosine, nearest, mixture and displacement of\n"
+      "outgoing directions; displacement and blend of half vectors; for RGL files rgl, the format's own warps; lobes1, lobes2 and lobes3, fitted GGX lobes; and\n"
       "displacement_small, a stack of about the lobes' bytes. Luminaires: relative variance and speed of emission.\n\n"
       "Examples:\n"
       "  gonio report chrome.binary -o report\n"

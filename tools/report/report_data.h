@@ -20,7 +20,7 @@ struct CallTimes {
 
 /// One way of sampling one material, measured.
 struct MethodReport {
-  std::string id;          ///< uniform, cosine, nearest, mixture, displacement, displacement_small, rgl, lobes1 ... 3
+  std::string id;          ///< uniform, cosine, nearest, mixture, displacement, blend, displacement_small, rgl, lobes1 ... 3
   std::string chart;       ///< what the method's density is tabulated over; "none" if nothing is tabulated
   nlohmann::json params;   ///< what made it
   std::size_t bytes = 0;   ///< all memory that the sampler holds, the source table apart
@@ -44,6 +44,7 @@ struct MaterialReport {
 /// The emission of one luminaire, sampled by every method.
 struct LightReport {
   std::string name, source, format;
+  std::uint64_t source_bytes = 0;
   double flux;  ///< [lm], by quadrature of the bilinear diagram
   std::vector<EmissionQuality> methods;
 };

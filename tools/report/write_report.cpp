@@ -11,7 +11,7 @@
 #include <ostream>
 #include <sstream>
 
-#include <gonio/brdf/atomic_file.h>
+#include <gonio/mapping/atomic_file.h>
 #include <gonio/mapping/concentric.h>
 #include <gonio/mapping/error.h>
 
@@ -42,6 +42,21 @@ std::string number(double x, int digits = 3) {
 
 std::string kib(std::size_t bytes) { return number(static_cast<double>(bytes) / 1024, 3) + " KiB"; }
 
+/// The most efficient method of each material.
+void write_overview(std::ostream& out, const Report& report) {
+  if (report.materials.empty()) return;
+  out << "\nEfficiency is 1 / (ns of a sample × (mean relvar from 2° to 70° + 0.001)).\n\n"
+         "| material | most efficient | sample ns | mean relvar | efficiency | worst weight | bytes |\n|---|---|---|---|---|---|---|\n";
+  for (const MaterialReport& material : report.materials) {
+    const MethodReport* best = best_method(material);
+    if (!best) continue;
+    double worst = 0;
+    for (const auto& q : best->angles) worst = std::max(worst, q.max_weight);
+    out << "| " << material.name << " | " << title(*best) << " | " << number(best->ns.sample) << " | " << number(mean_relvar(*best), 2) << " | "
+        << number(efficiency(*best)) << " | " << number(worst) << " | " << kib(best->bytes) << " |\n";
+  }
+}
+
 void write_markdown(std::ostream& out, const Report& report) {
   out << "# Sampling quality\n\ngonio " GONIO_VERSION ", " << report.machine.cpu << ", " << report.machine.compiler << ", "
       << report.machine.threads << " threads.\n\n"
@@ -49,16 +64,17 @@ void write_markdown(std::ostream& out, const Report& report) {
          "variance of a white-furnace estimate, 0 is perfect, and the number of samples for a given noise is in proportion to it. "
          "Times are nanoseconds a call on one thread. A chi-square p below "
       << number(report_significance(report), 2) << " (0.01 for the whole report, Sidak) says that draws do not follow the pdf.\n";
+  write_overview(out, report);
   for (const MaterialReport& material : report.materials) {
-    out << "\n## " << material.name << "\n\n" << material.format << ", " << kib(material.source_bytes) << ", `" << material.source << "`\n\n![grid](" << material.name << ".svg)\n\n"
-        << "| method | chart | bytes | build s | sample ns | pdf ns | eval ns |";
+    out << "\n## " << material.name << "\n\n" << material.format << ", " << kib(material.source_bytes) << ", `" << material.source << "`\n\n**" << verdict(material) << "**\n\n![grid](" << material.name << ".svg)\n\n"
+        << "| method | chart | bytes | build s | sample ns | pdf ns | eval ns | efficiency |";
     for (const double angle : report_angles) out << " relvar " << angle << "° |";
-    out << "\n|---|---|---|---|---|---|---|";
+    out << "\n|---|---|---|---|---|---|---|---|";
     for (std::size_t k = 0; k < std::size(report_angles); ++k) out << "---|";
     out << '\n';
     for (const MethodReport& m : material.methods) {
       out << "| " << m.id << " | " << m.chart << " | " << kib(m.bytes) << " | " << number(m.build_seconds, 2) << " | " << number(m.ns.sample)
-          << " | " << number(m.ns.pdf) << " | " << number(m.ns.eval) << " |";
+          << " | " << number(m.ns.pdf) << " | " << number(m.ns.eval) << " | " << number(efficiency(m)) << " |";
       for (const auto& q : m.angles) out << ' ' << number(q.relvar, 2) << " |";
       out << '\n';
     }
@@ -139,8 +155,8 @@ nlohmann::json to_json(const Report& report) {
   for (const LightReport& light : report.lights) {
     nlohmann::json methods = nlohmann::json::array();
     for (const EmissionQuality& q : light.methods)
-      methods.push_back({{"method", q.method}, {"flux", q.flux}, {"relvar", q.relvar}, {"ns", q.nanoseconds_per_draw}});
-    lights.push_back({{"name", light.name}, {"source", light.source}, {"format", light.format}, {"flux", light.flux}, {"methods", std::move(methods)}});
+      methods.push_back({{"id", q.id}, {"flux", q.flux}, {"relvar", q.relvar}, {"ns", {{"sample", q.nanoseconds_per_draw}}}});
+    lights.push_back({{"name", light.name}, {"source", light.source}, {"format", light.format}, {"source_bytes", light.source_bytes}, {"flux", light.flux}, {"methods", std::move(methods)}});
   }
   return {{"gonio_version", GONIO_VERSION},
           {"machine", {{"cpu", report.machine.cpu}, {"compiler", report.machine.compiler}, {"threads", report.machine.threads}}},
@@ -162,13 +178,13 @@ void write_report(const std::filesystem::path& directory, const Report& report) 
 
 void print_summary(std::ostream& out, const Report& report) {
   const auto cell = [&](const std::string& text, int width) -> std::ostream& { return out << std::setw(width) << text; };
-  out << std::left << std::setw(28) << "material" << std::setw(14) << "method" << std::right;
+  out << std::left << std::setw(28) << "material" << std::setw(20) << "method" << std::setw(10) << "chart" << std::right;
   for (const char* head : {"KiB", "sample ns", "pdf ns"}) cell(head, 11);
   for (const double angle : report_angles) cell("rv " + number(angle) + "°", 10);  // the degree sign is two bytes
   out << '\n';
   for (const MaterialReport& material : report.materials) {
     for (const MethodReport& m : material.methods) {
-      out << std::left << std::setw(28) << material.name << std::setw(14) << m.id << std::right;
+      out << std::left << std::setw(28) << material.name << std::setw(20) << m.id << std::setw(10) << m.chart << std::right;
       cell(number(static_cast<double>(m.bytes) / 1024), 11);
       cell(number(m.ns.sample), 11);
       cell(number(m.ns.pdf), 11);

@@ -6,8 +6,8 @@
 #include <ostream>
 #include <sstream>
 
-#include <gonio/brdf/atomic_file.h>
 #include <gonio/brdf/proof/random.h>
+#include <gonio/mapping/atomic_file.h>
 #include <gonio/mapping/concentric.h>
 
 namespace gonio {

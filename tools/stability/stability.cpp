@@ -1,7 +1,7 @@
 #include <gonio/tools/stability/stability.h>
 
-#include <gonio/brdf/atomic_file.h>
 #include <gonio/brdf/proof/chi_square.h>
+#include <gonio/mapping/atomic_file.h>
 #include <gonio/mapping/error.h>
 #include <gonio/tools/progress.h>
 #include <gonio/tools/stability/figures.h>

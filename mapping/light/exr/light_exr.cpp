@@ -6,9 +6,11 @@
 #include <ImfInputFile.h>
 #include <ImfIntAttribute.h>
 #include <ImfOutputFile.h>
+#include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
 #include <ImfTestFile.h>
 #include <ImfVecAttribute.h>
+#include <gonio/mapping/atomic_file.h>
 #include <gonio/mapping/error.h>
 #include <gonio/mapping/light/exr/light_exr.h>
 #include <gonio/mapping/light/octahedral.h>
@@ -40,13 +42,16 @@ void write(const std::filesystem::path& path, Imf::Header header, const char* ch
   buffer.insert(channel,
                 Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(pixels.data()), sizeof(float),
                            sizeof(float) * static_cast<std::size_t>(width)));
+  // To memory first: OpenEXR finishes its files in destructors, where a full disk goes unnoticed.
+  Imf::StdOSStream bytes;
   try {
-    Imf::OutputFile file(path.c_str(), header);
+    Imf::OutputFile file(bytes, header);
     file.setFrameBuffer(buffer);
     file.writePixels(static_cast<int>(pixels.size()) / width);
   } catch (const std::exception& e) {
     throw Error(path.string() + ": cannot be written: " + e.what());
   }
+  write_stream_atomically(path, [&](std::ostream& stream) { stream << bytes.str(); });
 }
 
 /// `direction_of(x, y)` at points of the image in pixels.

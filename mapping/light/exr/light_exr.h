@@ -13,8 +13,8 @@ inline constexpr int light_exr_version = 1;
 
 /// Writes a luminaire as an OpenEXR file of this library: channel "cd" (32-bit float), a row per
 /// meridian, a column per parallel; attributes gonioLight (the version), c and gamma (lines [deg]),
-/// the frame, and what the file said about the luminaire. A type B diagram keeps its own frame. Any
-/// file at `path` is overwritten in place.
+/// the frame, and what the file said about the luminaire. A type B diagram keeps its own frame. Here
+/// and below, a file at `path` is replaced as a whole or left as it was.
 /// @throws Error if the path cannot be written.
 void save_light(const std::filesystem::path& path, const Luminaire& luminaire);
 

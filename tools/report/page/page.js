@@ -56,7 +56,7 @@ function methods_table(material) {
     const cells = [bytes_text(m.bytes), number(m.build_seconds, 2), number(m.ns.sample), ...(batch ? [number(m.ns.sample_batch)] : []), number(m.ns.pdf), number(m.ns.eval),
       number(relvar_at(m, 'mean'), 2), `${number(100 * efficiency_of(m) / efficiency_of(best))} %`, number(worst), number(100 * invalid, 2) + ' %',
       p < significance ? `<strong>${number(p, 2)}</strong>` : number(p, 2), number(m.qmc_slope, 2), number(m.coherence.stretch_p99), m.coherence.tears];
-    return `<tr${m === best ? ' class="best"' : ''}><td>${key_mark(key_of(m))}${escaped(title_of(m))}</td>${cells.map(c => `<td>${c}</td>`).join('')}</tr>`;
+    return `<tr${m === best ? ' class="best"' : ''}><td>${key_mark(key_of(m))}${escaped(title_of(m))}${m.params.chart_auto ? ' <abbr title="gonio convert --chart auto keeps this stack">auto</abbr>' : ''}</td>${cells.map(c => `<td>${c}</td>`).join('')}</tr>`;
   });
   const heads = ['method', 'memory', 'build, s', 'sample, ns', ...(batch ? ['batch, ns'] : []), 'pdf, ns', 'eval, ns', 'mean relvar', 'efficiency', 'worst weight', 'invalid, max', 'χ² p, min',
     "Sobol' slope", 'stretch', 'tears'];
