@@ -22,6 +22,7 @@ namespace gonio {
 class Chromium {
  public:
   explicit Chromium(const std::filesystem::path& profile) {
+    signal(SIGPIPE, SIG_IGN);  // a browser that has gone is an error of write()
     int commands[2], answers[2];
     if (pipe2(commands, O_CLOEXEC) != 0 || pipe2(answers, O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
     const std::string data = "--user-data-dir=" + profile.string();

@@ -69,14 +69,14 @@ class PageTest : public testing::Test {
     std::filesystem::remove_all(directory_, ignored);
   }
 
-  void open(const json& report) {
+  void open(const json& report, const std::string& ready = "document.querySelector('.chart svg')") {
     const auto file = directory_ / "report.html";
     std::ofstream out(file);
     write_page(out, report);
     out.close();
     address_ = "file://" + file.string();
     browser_->call("Page.navigate", {{"url", address_}});
-    ASSERT_TRUE(browser_->wait_for("document.readyState === 'complete' && document.querySelector('.chart svg')"));
+    ASSERT_TRUE(browser_->wait_for("document.readyState === 'complete' && " + ready));
   }
 
   /// Everything on the page is drawn, whether in the window or not, as for a printer.
@@ -124,7 +124,20 @@ TEST_F(PageTest, ShowsEveryChartAndAsksForNothing) {
   draw_all();
   EXPECT_EQ(count(".chart svg"), 1 + 2 * charts);
   EXPECT_EQ(count(".chart .empty"), 0);
+  EXPECT_EQ(count(".material:not([hidden])"), 2);
+  browser_->evaluate("dispatchEvent(new Event('afterprint'))");
+  EXPECT_EQ(count(".material:not([hidden])"), 1);
   expect_clean();
+}
+
+/// The check of the other tests can fail.
+TEST_F(PageTest, ComplaintsAndRequestsAreNoticed) {
+  open(example());
+  expect_clean();
+  browser_->evaluate("console.error('found')");
+  EXPECT_EQ(browser_->complaints.size(), 1u);
+  browser_->evaluate("new Promise(done => { const i = new Image(); i.onload = i.onerror = done; i.src = 'http://localhost:1/'; })");
+  EXPECT_GT(browser_->complaints.size(), 1u) << "the page's policy ought to block requests";
 }
 
 TEST_F(PageTest, ControlsWork) {
@@ -207,6 +220,13 @@ TEST_F(PageTest, ReportsWithoutCurvesOrMaterialsAreShown) {
   draw_all();
   EXPECT_EQ(count("#material-0 .chart svg"), 3);
   EXPECT_EQ(count("#material-0 .chart .empty"), charts - 3);
+
+  json lights = example();
+  lights["materials"] = json::array();
+  lights["lights"] = {{{"name", "lamp"}, {"source", "lamp.ies"}, {"format", "ies"}, {"flux", 1000}, {"methods", {{{"method", "table"}, {"flux", 1001}, {"relvar", 0.1}, {"ns", 30}}}}}};
+  open(lights, "document.querySelector('#lights td')");
+  EXPECT_EQ(text("#lights h2"), "lamp");
+  EXPECT_EQ(count("#controls:not([hidden])"), 0);
   expect_clean();
 }
 

@@ -141,7 +141,7 @@ class Path {
   }
 
   void draw(const Point& to) {
-    constexpr double near = 5;  // half a percent cannot be seen
+    constexpr double near = 8;  // less than a pixel of a small picture
     if (!drawing_) {
       text_ << 'M' << to.x << ',' << to.y;
     } else if (std::hypot(to.x - last_.x, to.y - last_.y) < near) {

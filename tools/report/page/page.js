@@ -264,7 +264,7 @@ function start() {
   });
   dark_theme.addEventListener('change', () => redraw());
   addEventListener('beforeprint', () => {
-    state.printing = true;
+    state.printing = element('methods-box').open = true;
     report.materials.forEach((_, n) => { element(`material-${n}`).hidden = false; });
     visible_figures().forEach(draw);
   });
