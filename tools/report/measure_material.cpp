@@ -81,8 +81,8 @@ class Bench {
 
  private:
   void add_curves(MaterialReport& material) {
-    // The grids of these say little, or what another says.
-    static const std::set<std::string> no_grid{"uniform", "cosine", "nearest", "lobes1", "lobes2", "displacement_small"};
+    // Grids are most of the page's bytes; those of these say little.
+    static const std::set<std::string> no_grid{"uniform", "cosine", "nearest", "lobes1", "lobes2", "lobes3", "displacement_small"};
     for (const double theta_i : curve_angles) {
       const auto k = std::find(std::begin(report_angles), std::end(report_angles), theta_i) - std::begin(report_angles);
       const double albedo = static_cast<double>(luminance(glm::vec3(methods_.front().angles[static_cast<std::size_t>(k)].albedo_table)));

@@ -153,7 +153,7 @@ const near = new IntersectionObserver(entries => {
     near.unobserve(entry.target);
     draw(entry.target);
   }
-}, {rootMargin: '600px'});
+}, {rootMargin: '250px'});
 
 function redraw(filter = () => true) {
   for (const figure of visible_figures().filter(filter)) {
