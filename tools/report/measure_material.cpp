@@ -76,10 +76,22 @@ class Bench {
       progress(static_cast<double>(++done) / static_cast<double>(jobs));
     });
     add_curves(material);
+    add_weights(material);
     material.methods = std::move(methods_);
   }
 
  private:
+  void add_weights(MaterialReport& material) {
+    for (std::size_t m = 0; m < methods_.size(); ++m) {
+      if (methods_[m].id != "displacement" && methods_[m].id != "blend") continue;
+      WeightRow row{methods_[m].id + " / " + methods_[m].chart, {}, {}};
+      row.maps.resize(std::size(report_angles));
+      parallel_for(row.maps.size(), [&](std::size_t k) { row.maps[k] = weight_map(subjects_[m], report_angles[k] * pi<double> / 180); });
+      for (const proof::Quality& q : methods_[m].angles) row.relvar.push_back(q.relvar);
+      material.weights.push_back(std::move(row));
+    }
+  }
+
   void add_curves(MaterialReport& material) {
     // Grids are most of the page's bytes; those of these say little.
     static const std::set<std::string> no_grid{"uniform", "cosine", "nearest", "lobes1", "lobes2", "lobes3", "displacement_small"};

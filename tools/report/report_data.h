@@ -10,6 +10,7 @@
 #include <gonio/brdf/proof/coherence.h>
 #include <gonio/brdf/proof/measure.h>
 #include <gonio/mapping/light/emission.h>
+#include <gonio/tools/report/weights_figure.h>
 
 namespace gonio {
 
@@ -38,6 +39,7 @@ struct MaterialReport {
   std::vector<MethodReport> methods;
   nlohmann::json fits = nlohmann::json::array();  ///< of one, two and three lobes; empty for a stack file
   nlohmann::json curves = nlohmann::json::array();  ///< table_curves() at curve_angles
+  std::vector<WeightRow> weights{};     ///< of the continuous stacks, for the figure; not part of the JSON
   std::optional<Stack<float>> stack{};  ///< of `displacement`, for the figure; not part of the JSON
 };
 

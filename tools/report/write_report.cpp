@@ -168,8 +168,10 @@ void write_report(const std::filesystem::path& directory, const Report& report) 
   std::error_code failed;
   std::filesystem::create_directories(directory, failed);
   if (failed) throw Error(directory.string() + ": cannot be made: " + failed.message() + ", expected a folder to write to");
-  for (const MaterialReport& material : report.materials)
+  for (const MaterialReport& material : report.materials) {
+    if (!material.weights.empty()) write_weights_figure(directory / (material.name + "-weights.svg"), material.name, material.weights);
     if (material.stack) write_grid_figure(directory / (material.name + ".svg"), material.name, *material.stack);
+  }
   const nlohmann::json json = to_json(report);
   write_stream_atomically(directory / "report.json", [&](std::ostream& out) { out << json.dump(1) << '\n'; });
   write_stream_atomically(directory / "report.html", [&](std::ostream& out) { write_page(out, json); });

@@ -10,8 +10,8 @@ namespace gonio {
 /// The report with stable keys; see docs/tool.md.
 nlohmann::json to_json(const Report& report);
 
-/// Writes report.json, report.md, report.html and a figure per material into `directory`, which is made if need be; each file is
-/// replaced as a whole. @throws Error if that fails.
+/// Writes report.json, report.md, report.html and the figures of each material into `directory`, which is
+/// made if need be; each file is replaced as a whole. @throws Error if that fails.
 void write_report(const std::filesystem::path& directory, const Report& report);
 
 /// A table of one line per material and method.
