@@ -12,7 +12,7 @@
 namespace gonio {
 namespace {
 
-constexpr double panel = 144, gap = 16, left = 150, top = 74;
+constexpr double panel = 144, gap = 16, left = 176, top = 74;
 
 /// The colour of a weight: saturated at half and at twice the mean.
 void fill(std::ostream& out, float weight) {
