@@ -28,8 +28,9 @@ Drawn draw(const BatchStack& batch, std::size_t count, std::uint32_t seed, float
   for (std::size_t k = 0; k < count; ++k) {
     const float angles[] = {0, 0.45f, 1.4f, 1.55f};
     d.theta_i.push_back(theta_i >= 0 ? theta_i : k % 8 == 0 ? angles[k / 8 % 4] : 1.5f * random());
-    d.u.push_back(k % 61 == 0 ? 0 : k % 67 == 0 ? 1 - 0x1p-24f : random());
-    d.v.push_back(k % 71 == 0 ? 0.5f : random());
+    const bool edges = theta_i < 0;
+    d.u.push_back(!edges ? random() : k % 61 == 0 ? 0 : k % 67 == 0 ? 1 - 0x1p-24f : random());
+    d.v.push_back(edges && k % 71 == 0 ? 0.5f : random());
   }
   for (Floats* f : {&d.x, &d.y, &d.z, &d.pdf}) f->resize(count);
   batch.sample_n(count, d.theta_i.data(), d.u.data(), d.v.data(), d.x.data(), d.y.data(), d.z.data(), d.pdf.data());
@@ -63,60 +64,62 @@ void for_stacks(const Check& check) {
   }
 }
 
+/// How far the direction moves when u and v do by a few float steps: what a draw can be held to.
+double spread(const Stack<double>& stack, double theta_i, double u, double v) {
+  constexpr double step = 0x1p-21;
+  const auto centre = stack.sample(theta_i, u, v).wo;
+  double far = 0;
+  for (const double du : {-step, 0.0, step})
+    for (const double dv : {-step, 0.0, step}) {
+      const auto wo = stack.sample(theta_i, std::clamp(u + du, 0.0, 1.0), std::clamp(v + dv, 0.0, 1.0)).wo;
+      far = std::max(far, std::hypot(wo.x - centre.x, wo.y - centre.y, wo.z - centre.z));
+    }
+  return far;
+}
+
 TEST(BatchStack, SamplesAsStackDoes) {
-  for_stacks([](const Stack<float>& stack, const Stack<double>&, const proof::GalleryStack& entry) {
+  for_stacks([](const Stack<float>& stack, const Stack<double>& wide, const proof::GalleryStack&) {
     const Drawn d = draw(BatchStack(stack), 4001, 1);
-    int far = 0;
-    double worst = 0;
     for (std::size_t k = 0; k < d.x.size(); ++k) {
-      const auto s = stack.sample(d.theta_i[k], d.u[k], d.v[k]);
-      const double distance = std::hypot(s.wo.x - d.x[k], s.wo.y - d.y[k], s.wo.z - d.z[k]);
-      worst = std::max(worst, distance);
-      far += !(distance < 2e-5);
       ASSERT_NEAR(std::hypot(d.x[k], d.y[k], d.z[k]), 1, 2e-6);
       ASSERT_GT(d.z[k], 0);
       ASSERT_GE(d.pdf[k], 0);
+      const auto s = stack.sample(d.theta_i[k], d.u[k], d.v[k]);
+      const double distance = std::hypot(s.wo.x - d.x[k], s.wo.y - d.y[k], s.wo.z - d.z[k]);
+      if (distance <= 2e-5) continue;
+      ASSERT_LT(distance, 2e-5 + spread(wide, d.theta_i[k], d.u[k], d.v[k]));
     }
-    if (far) std::printf("%s %s %s: far %d worst %g zero %d\n", entry.name.c_str(), to_string(stack.interpolation()), to_string(stack.chart()), far, worst, entry.zero_regions);
   });
 }
 
-TEST(BatchStack, PdfAsStackHasIt) {
+TEST(BatchStack, PdfIsThatOfTheDraws) {
   for_stacks([](const Stack<float>& stack, const Stack<double>&, const proof::GalleryStack& entry) {
     const BatchStack batch(stack);
     const Drawn d = draw(batch, 4001, 2);
     const Floats pdf = pdf_of(batch, d);
     const float largest = *std::max_element(d.pdf.begin(), d.pdf.end());
-    double worst = 0, worst_scalar = 0;
-    int bad = 0, scalar_bad = 0;
     for (std::size_t k = 0; k < pdf.size(); ++k) {
-      const double right = stack.pdf(d.theta_i[k], {d.x[k], d.y[k], d.z[k]});
       const double bound = 2e-3 * d.pdf[k] + 1e-4 * largest;
-      const double error = std::abs(pdf[k] - d.pdf[k]) / bound, scalar = std::abs(right - d.pdf[k]) / bound;
-      bad += !(error < 1), scalar_bad += !(scalar < 1);
-      worst = std::max(worst, error), worst_scalar = std::max(worst_scalar, scalar);
+      ASSERT_NEAR(pdf[k], d.pdf[k], bound) << k;
+      if (entry.zero_regions) continue;  // there the searches may end on either side of a gap
+      ASSERT_NEAR(pdf[k], stack.pdf(d.theta_i[k], {d.x[k], d.y[k], d.z[k]}), bound) << k;
     }
-    if (bad) std::printf("%s %s %s: pdf bad %d worst %g scalar %d %g zero %d\n", entry.name.c_str(), to_string(stack.interpolation()), to_string(stack.chart()), bad, worst, scalar_bad, worst_scalar, entry.zero_regions);
   });
 }
 
 TEST(BatchStack, InvertComesBack) {
-  for_stacks([](const Stack<float>& stack, const Stack<double>&, const proof::GalleryStack& entry) {
+  for_stacks([](const Stack<float>& stack, const Stack<double>&, const proof::GalleryStack&) {
     const BatchStack batch(stack);
     const Drawn d = draw(batch, 4001, 2);
     Floats u(d.x.size()), v(d.x.size()), pdf(d.x.size());
     batch.invert_n(d.x.size(), d.theta_i.data(), d.x.data(), d.y.data(), d.z.data(), u.data(), v.data(), pdf.data());
     const float largest = *std::max_element(d.pdf.begin(), d.pdf.end());
-    int bad = 0, scalar_bad = 0;
-    double worst = 0;
     for (std::size_t k = 0; k < pdf.size(); ++k) {
       if (!(d.pdf[k] > 1e-6f * largest)) continue;
-      const auto right = stack.invert(d.theta_i[k], {d.x[k], d.y[k], d.z[k]});
-      const double error = std::max(std::abs(u[k] - d.u[k]), std::abs(v[k] - d.v[k]));
-      bad += !(error < 1e-4), worst = std::max(worst, error);
-      scalar_bad += !right || !(std::max(std::abs(right->at.u - d.u[k]), std::abs(right->at.v - d.v[k])) < 1e-4);
+      ASSERT_NEAR(u[k], d.u[k], 3e-4) << k;
+      ASSERT_NEAR(v[k], d.v[k], 3e-4) << k;
+      ASSERT_NEAR(pdf[k], d.pdf[k], 2e-3 * d.pdf[k] + 1e-4 * largest) << k;
     }
-    if (bad) std::printf("%s %s %s: invert bad %d scalar %d worst %g zero %d\n", entry.name.c_str(), to_string(stack.interpolation()), to_string(stack.chart()), bad, scalar_bad, worst, entry.zero_regions);
   });
 }
 
@@ -159,12 +162,11 @@ TEST(BatchStack, RefusesMixture) {
 
 // Draws against the pdf by chi-square, both from the batch; and a control: another angle's draws fail.
 TEST(BatchStack, DrawsFollowThePdf) {
-  constexpr std::size_t draws = 200000;
-  int tests = 0;
+  constexpr std::size_t draws = 100000;
+  int seen = 0;
   const double significance = proof::sidak(0.01, 100);
   for_stacks([&](const Stack<float>& stack, const Stack<double>&, const proof::GalleryStack& entry) {
-    if (entry.zero_regions || tests >= 24) return;
-    ++tests;
+    if (entry.zero_regions || ++seen % 23 != 0) return;
     const BatchStack batch(stack);
     const float theta_i = 0.7f;
     const proof::Density pdf = [&](const glm::vec3& w) {
@@ -179,6 +181,9 @@ TEST(BatchStack, DrawsFollowThePdf) {
     const auto result = against(draw(batch, draws, 5, theta_i));
     EXPECT_TRUE(result.passed(significance)) << result.summary();
     EXPECT_NEAR(result.pdf_integral, 1, 2e-3);
+    Drawn turned = draw(batch, draws, 5, theta_i);  // the control: by 0.03 rad towards +x
+    for (std::size_t k = 0; k < draws; ++k) turned.x[k] += 0.03f * turned.z[k], turned.z[k] -= std::min(0.03f * turned.x[k], 0.9f * turned.z[k]);
+    EXPECT_FALSE(against(turned).passed(significance));
   });
 }
 

@@ -36,7 +36,7 @@ struct OneDiagram {
 
   struct Meridian {
     VI i, row;  // indices of the meridian into phi(), and of its row into density()
-    V a, phi, mass;
+    V a, phi, mass, phi0, width, m0, m1;
   };
   HWY_INLINE VI row(VI i) const {
     return hn::Add(block, hn::Mul(hn::Sub(i, block), set_int(layout.parallels)));
@@ -48,22 +48,28 @@ struct OneDiagram {
     const V phi0 = at(phi(), i), width = hn::Sub(at(phi() + 1, i), phi0);
     const V m0 = at(masses(), i), m1 = at(masses() + 1, i);
     const V a = invert_azimuth(width, m0, m1, hn::Sub(target, at(cumulative_phi(), i)));
-    return {i, row(i), a, hn::MulAdd(a, width, phi0), mix(a, m0, m1)};
+    return {i, row(i), a, hn::MulAdd(a, width, phi0), mix(a, m0, m1), phi0, width, m0, m1};
   }
   HWY_INLINE Meridian meridian_through(V angle) const {
     const VI i = find(phi(), block, layout.meridians, angle);
     const V phi0 = at(phi(), i), width = hn::Sub(at(phi() + 1, i), phi0);
-    const V a = clamp01(hn::Div(hn::Sub(angle, phi0), width));
-    return {i, row(i), a, hn::MulAdd(a, width, phi0), mix(a, at(masses(), i), at(masses() + 1, i))};
+    const V a = clamp01(hn::Div(hn::Sub(angle, phi0), width)), m0 = at(masses(), i), m1 = at(masses() + 1, i);
+    return {i, row(i), a, hn::MulAdd(a, width, phi0), mix(a, m0, m1), phi0, width, m0, m1};
+  }
+  /// The meridian through `angle` as long as that is between the same lines, else the nearer one of these.
+  HWY_INLINE void move_to(Meridian& m, V angle) const {
+    m.a = clamp01(hn::Div(hn::Sub(angle, m.phi0), m.width));
+    m.phi = hn::MulAdd(m.a, m.width, m.phi0);
+    m.mass = mix(m.a, m.m0, m.m1);
   }
   HWY_INLINE V u_of(const Meridian& m) const {
-    const V width = hn::Sub(at(phi() + 1, m.i), at(phi(), m.i));
-    const V inside = hn::Mul(hn::Mul(m.a, width), hn::Mul(set(0.5f), hn::Add(at(masses(), m.i), m.mass)));
+    const V inside = hn::Mul(hn::Mul(m.a, m.width), hn::Mul(set(0.5f), hn::Add(m.m0, m.mass)));
     return hn::Min(hn::Div(hn::Add(at(cumulative_phi(), m.i), inside), mass()), set(1));
   }
 
   struct Parallel {
     V r, pdf;
+    Cell cell;
   };
   HWY_INLINE V across(const float* rows, const Meridian& m, VI index) const {
     return mix(m.a, at(rows, index), at(rows + layout.parallels, index));
@@ -88,18 +94,22 @@ struct OneDiagram {
     }
     const Cell c = cell(m, index, hn::Add(block, hn::Sub(index, m.row)));
     const V s = c.invert(hn::Sub(target, below));
-    return {hn::MulAdd(s, c.h, c.r0), c.density(s)};
+    return {hn::MulAdd(s, c.h, c.r0), c.density(s), c};
+  }
+  /// To another radius of the same cell.
+  HWY_INLINE void move_to(Parallel& p, V radius) const {
+    const V s = place(p.cell, radius);
+    p.r = hn::MulAdd(s, p.cell.h, p.cell.r0), p.pdf = p.cell.density(s);
   }
   HWY_INLINE V place(const Cell& c, V radius) const { return clamp01(hn::Div(hn::Sub(radius, c.r0), c.h)); }
-  HWY_INLINE V v_of(const Meridian& m, V radius) const {
+  struct Inverse {
+    V v, pdf;
+  };
+  HWY_INLINE Inverse inverse(const Meridian& m, V radius) const {
     const VI j = find(r(), block, layout.parallels, radius), index = hn::Add(m.row, hn::Sub(j, block));
     const Cell c = cell(m, index, j);
-    return hn::Min(quotient(hn::Add(across(cumulative(), m, index), c.mass(place(c, radius))), m.mass), set(1));
-  }
-  HWY_INLINE V pdf(const Meridian& m, V radius) const {
-    const VI j = find(r(), block, layout.parallels, radius);
-    const Cell c = cell(m, hn::Add(m.row, hn::Sub(j, block)), j);
-    return c.density(place(c, radius));
+    const V s = place(c, radius), below = hn::Add(across(cumulative(), m, index), c.mass(s));
+    return {hn::Min(quotient(below, m.mass), set(1)), c.density(s)};
   }
 
   HWY_INLINE OnDisk sample(V u, V v) const {
@@ -107,10 +117,16 @@ struct OneDiagram {
     const Parallel p = parallel_at(m, v);
     return {p.r, m.phi, p.pdf};
   }
-  HWY_INLINE V pdf(V r, V phi) const { return pdf(meridian_through(phi), r); }
-  HWY_INLINE Uniform invert(V r, V phi) const {
-    const Meridian m = meridian_through(phi);
-    return {u_of(m), v_of(m, r), pdf(m, r)};
+  HWY_INLINE V pdf(V radius, V angle) const {
+    const Meridian m = meridian_through(angle);
+    const VI j = find(r(), block, layout.parallels, radius);
+    const Cell c = cell(m, hn::Add(m.row, hn::Sub(j, block)), j);
+    return c.density(place(c, radius));
+  }
+  HWY_INLINE Uniform invert(V radius, V angle) const {
+    const Meridian m = meridian_through(angle);
+    const Inverse along = inverse(m, radius);
+    return {u_of(m), along.v, along.pdf};
   }
 };
 
@@ -280,13 +296,15 @@ struct DisplacementLanes {
         phi, start(u0, quotient(set(1), through0.mass), u1, quotient(set(1), through1.mass)), hn::Min(u0, u1),
         hn::Max(u0, u1), set(64 * pi<float> * epsilon));
     const V phi_error = hn::Sub(phi, both(m.first.phi, m.second.phi));
-    M gap = in_gap(phi_error, slope_phi(m));
+    const V u_slope = slope_phi(m), u_step = quotient(phi_error, u_slope);
+    M gap = in_gap(phi_error, u_slope);
     const V phi_step = quotient(phi_error, quotients(set(1), m.first.mass, set(1), m.second.mass));
-    m = {d0.meridian_through(hn::Add(m.first.phi, quotient(phi_step, m.first.mass))),
-         d1.meridian_through(hn::Add(m.second.phi, quotient(phi_step, m.second.mass)))};
+    d0.move_to(m.first, hn::Add(m.first.phi, quotient(phi_step, m.first.mass)));
+    d1.move_to(m.second, hn::Add(m.second.phi, quotient(phi_step, m.second.mass)));
 
-    const V q0 = hn::Sqrt(d0.v_of(m.first, r)), q1 = hn::Sqrt(d1.v_of(m.second, r));
-    const V at0 = hn::Mul(d0.pdf(m.first, r), r), at1 = hn::Mul(d1.pdf(m.second, r), r);
+    const OneDiagram::Inverse along0 = d0.inverse(m.first, r), along1 = d1.inverse(m.second, r);
+    const V q0 = hn::Sqrt(along0.v), q1 = hn::Sqrt(along1.v);
+    const V at0 = hn::Mul(along0.pdf, r), at1 = hn::Mul(along1.pdf, r);
     Parallel a, b;
     const auto v_at = [](V x) HWY_ATTR {
       return hn::Min(hn::Max(hn::Mul(x, x), set(smallest_v)), set(1 - epsilon / 2));
@@ -300,12 +318,13 @@ struct DisplacementLanes {
         r, start(q0, quotient(hn::Mul(q0, m.first.mass), at0), q1, quotient(hn::Mul(q1, m.second.mass), at1)),
         hn::Min(q0, q1), hn::Max(q0, q1), set(64 * epsilon));
     const V r_error = hn::Sub(r, both(a.r, b.r));
-    gap = hn::Or(gap, in_gap(r_error, hn::Mul(set(0.5f), slope_r2(m, a, b))));
+    const V v_slope = hn::Mul(set(0.5f), slope_r2(m, a, b)), v_step = quotient(r_error, v_slope);
+    gap = hn::Or(gap, in_gap(r_error, v_slope));
     const V s0 = quotient(m.first.mass, hn::Mul(a.pdf, a.r)), s1 = quotient(m.second.mass, hn::Mul(b.pdf, b.r));
     const V r_step = quotient(r_error, both(s0, s1));
-    a.r = clamp01(hn::MulAdd(s0, r_step, a.r)), a.pdf = d0.pdf(m.first, a.r);
-    b.r = clamp01(hn::MulAdd(s1, r_step, b.r)), b.pdf = d1.pdf(m.second, b.r);
-    return {u, v_at(q), hn::IfThenZeroElse(gap, density(m, a, b, both(a.r, b.r)))};
+    d0.move_to(a, hn::MulAdd(s0, r_step, a.r));
+    d1.move_to(b, hn::MulAdd(s1, r_step, b.r));
+    return {clamp01(hn::Add(u, u_step)), clamp01(hn::Add(v_at(q), v_step)), hn::IfThenZeroElse(gap, density(m, a, b, both(a.r, b.r)))};
   }
   HWY_INLINE V pdf(V r, V phi) const { return invert(r, phi).pdf; }
 };
