@@ -7,6 +7,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <limits>
 
 namespace gonio {
 namespace {
@@ -113,7 +114,9 @@ glm::vec3 RglTable::value_at(const Normal& normal, float theta_i, const Lerp& sl
   if (!jacobian_) return colour;
   const float area = sigma(theta_i);
   if (!(area > 0.0f)) return glm::vec3(0.0f);
-  return colour * (bilinear(ndf_, normal.u_theta, normal.u_phi) / (4.0f * area));
+  // A damaged file may hold an ndf and a sigma whose quotient no float holds.
+  const float factor = std::min(bilinear(ndf_, normal.u_theta, normal.u_phi) / (4.0f * area), std::numeric_limits<float>::max());
+  return colour * factor;
 }
 
 glm::vec3 RglTable::eval_cosine(const glm::vec3& wi, const glm::vec3& wo) const noexcept {

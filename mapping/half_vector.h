@@ -66,7 +66,11 @@ class HalfVectorChart {
 
   /// The inverse of direction(). @param wo a unit vector with wo.z >= 0.
   Point disk(const Vec3<T>& wo) const noexcept {
-    const Vec3<T> h(sin_ + wo.x, wo.y, cos_ + wo.z);  // of length 2 wi.h
+    // wi + wo, of length 2 wi.h. Near a grazing mirror direction x is a small difference: it is taken
+    // from z and y, which hold it to more digits than wo.x does.
+    const T sin_o = std::sqrt((1 - wo.z) * (1 + wo.z));
+    const T x_mirror = (wo.z - cos_) * (wo.z + cos_) / (sin_ + sin_o) + wo.y * wo.y / (sin_o - wo.x);
+    const Vec3<T> h(wo.x < 0 && wo.z < T(0.5) ? x_mirror : sin_ + wo.x, wo.y, cos_ + wo.z);
     const T across2 = h.x * h.x + h.y * h.y, across = std::sqrt(across2), length = std::sqrt(across2 + h.z * h.z);
     const T x = across2 / (length * (length + h.z));
     const auto [m, cos_max, sin_max, norm] = meridian(across > 0 ? h.x / across : T(1));

@@ -80,8 +80,11 @@ class Stack {
   /// mixture has two pre-images: the one that floats hold better is returned.
   ///
   /// In float, where the density is at least 1e-6 of its largest value: sample() then invert() comes
-  /// back to (u, v) within 1e-4 (not for mixtures); invert() then sample() to `wo` within 2e-4 in each
-  /// component (mixtures: 1e-2), or as near as the floats u and v let it come where the map is steep.
+  /// back to (u, v) within 1e-4 (not for mixtures); invert() then sample() to `wo` within 5e-4 in each
+  /// component (mixtures: 1e-2; half-vector chart: 1e-3), or as near as the floats u and v let it come where the map is steep.
+  /// In the half-vector chart these bounds hold for `blend` up to theta_i = 0.9, the last with 2e-3; beyond, a
+  /// float wo holds its half vector to 1 / cos theta_i ulp, and beside the horizon displacement may find no
+  /// way back.
   std::optional<SquareInverse<T>> invert(T theta_i, const Vec3<T>& wo) const noexcept;
 
   Interpolation interpolation() const noexcept { return interpolation_; }

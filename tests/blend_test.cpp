@@ -115,87 +115,16 @@ TEST(Charts, HalfVectorStacksFillTheHemisphere) {
   }
 }
 
-// What holds at every angle. The rest compares single directions, of which a float holds the half vector
-// to 1 / cos theta_i ulp: those checks are made at moderate angles.
-bool at_every_angle(const std::string& check) {
-  static const std::set<std::string> checks{"domain", "mass", "where_zero", "chi_square", "moments", "albedo", "support"};
-  return checks.count(check) > 0;
-}
-constexpr double moderate = 1;
-
-// Known to fail for some tables: displacement inverts by a root search, which gives up beside the rim of
-// the disk, where the density falls to 0 and the map is too steep for the digits of the half vector.
-bool is_known(Interpolation interpolation, const std::string& check) {
-  static const std::set<std::string> checks{"round_trip_square", "round_trip_direction", "tears"};
-  return interpolation == Interpolation::displacement && checks.count(check) > 0;
-}
-
-proof::InvariantOptions options_for(Interpolation interpolation) {
+proof::InvariantOptions invariant_options() {
   proof::InvariantOptions options;
   options.runs = 1000;
   options.draws = 40000;
   options.points = 400;
-  if (interpolation == Interpolation::mixture) options.direction_bound = 1e-2;  // see Stack::invert()
-  options.one_to_one = interpolation != Interpolation::mixture;
-  options.continuous = interpolation == Interpolation::displacement || interpolation == Interpolation::blend;
+  // At the rim the density falls to 0 and r changes by the square root of the rounding of v: of the
+  // sums over four rows in a blend.
+  options.direction_bound = 2e-3;
   return options;
 }
-
-// The Gallery's densities read as densities of the half-vector disk.
-TEST(Charts, GalleryStacksOfHalfVectors) {
-  for (proof::GalleryStack entry : proof::gallery_stacks()) {
-    const bool shared = entry.grid.diagrams.size() > 1;
-    entry.grid.chart = Chart::half;
-    for (const Interpolation interpolation : {Interpolation::displacement, Interpolation::blend}) {
-      if (interpolation == Interpolation::blend && !shared) continue;
-      SCOPED_TRACE(entry.name + ", " + to_string(interpolation));
-      std::optional<Stack<float>> stack;
-      try {
-        stack.emplace(entry.grid, interpolation);
-      } catch (const Error& error) {
-        EXPECT_NE(std::string(error.what()).find("shared lines"), std::string::npos) << error.what();
-        continue;
-      }
-      proof::InvariantOptions options = options_for(interpolation);
-      options.symmetric = entry.grid.diagrams.front().azimuth == Azimuth::half;
-      options.continuous = options.continuous && !entry.zero_regions;
-      for (const double theta_i : {0.2, 1.3})
-        for (const proof::Check& check : check_invariants(proof::subject_of(*stack), theta_i, options))
-          EXPECT_TRUE(check.passed || (!at_every_angle(check.name) && (theta_i > moderate || entry.zero_regions)))
-              << "at " << theta_i << ": " << check.message;
-    }
-  }
-}
-
-class HalfVectorTables : public testing::TestWithParam<proof::GalleryTable> {};
-
-TEST_P(HalfVectorTables, InvariantsHold) {
-  const auto table = std::make_shared<const BrdfTable>(to_table(GetParam()));
-  StackOptions small;
-  small.chart = Chart::half;
-  small.incident = 12;
-  small.meridians = small.parallels = 16;
-  for (const Interpolation interpolation : {Interpolation::displacement, Interpolation::blend}) {
-    small.interpolation = interpolation;
-    const Sampler sampler(table, small);
-    for (const double theta_i : {0.0, 0.8, 88 * pi<double> / 180}) {
-      SCOPED_TRACE(to_string(interpolation));
-      proof::InvariantOptions options = options_for(interpolation);
-      options.continuous = options.continuous && !GetParam().zero_regions;
-      for (const proof::Check& check : check_invariants(proof::subject_of(sampler), theta_i, options))
-        EXPECT_TRUE(check.passed || (!at_every_angle(check.name) && theta_i > moderate) || is_known(interpolation, check.name))
-            << "at " << theta_i << ": " << check.message;
-    }
-  }
-}
-
-INSTANTIATE_TEST_SUITE_P(Gallery, HalfVectorTables, testing::ValuesIn(proof::gallery_tables()),
-                         [](const auto& entry) {
-                           std::string name = entry.param.name;
-                           for (char& c : name)
-                             if (c == '-') c = '_';
-                           return name;
-                         });
 
 const proof::GalleryTable& gallery_table(const std::string& name) {
   static const auto tables = proof::gallery_tables();
@@ -227,7 +156,7 @@ TEST(HalfVectorStack, SelfContainedAgreesWithItself) {
   options.bytes = 32 * 1024;
   const StackGrid grid = build_stack(*table, options);
   const Sampler sampler(grid, Colour::from_table(*table, Stack<float>(grid, Interpolation::blend), 16), Interpolation::blend);
-  proof::InvariantOptions invariants = options_for(Interpolation::blend);
+  proof::InvariantOptions invariants = invariant_options();
   // Towards the horizon the density falls to 0 in the last ulps of r, and its relative error rises.
   invariants.density_floor = 1e-2;
   invariants.weight_bound = 1e-3;

@@ -213,6 +213,21 @@ TEST_F(FitToolTest, ReportComparesLobesAndStacks) {
     }
   }
   EXPECT_EQ(lobes, 3);
+  ASSERT_EQ(material["curves"].size(), 4u);
+  for (const auto& method : material["methods"]) {
+    const double ns = method["ns"]["sample"], relvar = method["mean_relvar"];
+    EXPECT_NEAR(method["efficiency"].get<double>() * ns * (relvar + 0.001), 1, 1e-6) << method["id"];
+    ASSERT_EQ(method["curves"].size(), 4u);
+    for (std::size_t k = 0; k < 4; ++k) {
+      EXPECT_EQ(method["curves"][k]["pdf"].size(), material["curves"][k]["theta_o_deg"].size());
+      double shares = method["curves"][k]["weights"]["zero"];
+      for (const double share : method["curves"][k]["weights"]["shares"]) shares += share;
+      EXPECT_NEAR(shares, 1, 1e-3) << method["id"];
+    }
+  }
+  const std::string verdict = material["verdict"];
+  EXPECT_TRUE(contains(verdict, "Sample it with ")) << verdict;
+  for (const char* file : {"report/report.md", "report/report.html"}) EXPECT_TRUE(contains(read_bytes(path(file)), verdict)) << file;
   EXPECT_GT(material["lobes_against_stack"]["equal_time_ratio"].get<double>(), 0);
   EXPECT_TRUE(contains(read_bytes(path("report/report.md")), "For this material a "));
 }

@@ -13,4 +13,4 @@ build/gonio synth default -o build/demo/default.binary
 build/gonio convert build/demo/default.binary build/demo/default.exr
 build/gonio report build/demo/default.binary -o build/demo/report
 
-echo "The report: $PWD/build/demo/report/report.md (figures for programs: report.json)"
+echo "The report: $PWD/build/demo/report/report.html (as text: report.md, for programs: report.json)"

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <mutex>
@@ -16,8 +17,9 @@ class ProgressLine {
   explicit ProgressLine(std::string task);
   ~ProgressLine();
 
-  /// The share of the task that is done, in [0, 1]; not shown until it is known. Thread-safe.
-  void update(double share) noexcept { share_ = share; }
+  /// The share of the task that is done, in [0, 1]; not shown until it is known. A smaller one than
+  /// before, when work turned out to be more than thought, is not shown. From one thread at a time.
+  void update(double share) noexcept { share_ = std::max<double>(share, share_); }
 
  private:
   void run();

@@ -200,7 +200,7 @@ class Run {
     }
   }
 
-  /// What rounding of (u, v) makes of a draw: the draw and those of the numbers next to (u, v).
+  /// What rounding may make of (u, v): the draw and those of the numbers next to (u, v).
   std::vector<BsdfSample> rounded(const glm::vec2& u, const BsdfSample& s) const {
     constexpr float step = 0x1p-22f;
     std::vector<BsdfSample> draws{s};
@@ -234,15 +234,32 @@ class Run {
     return a.most < b.least ? pdf_difference(a.most, b.least) : b.most < a.least ? pdf_difference(b.most, a.least) : 0;
   }
 
-  /// What rounding of wo makes of pdf(): a turn and a change of height by some 2^-22.
-  Range rounded_pdf(const glm::vec3& wi, const glm::vec3& wo) const {
+  /// What rounding may make of wo: a turn and a change of height by some 2^-22.
+  static std::array<glm::vec3, 4> rounded(const glm::vec3& wo) {
     constexpr float step = 0x1p-22f;
+    return {turned(wo, step), turned(wo, -step), glm::vec3(wo.x, wo.y, std::min(wo.z + step, 1.0f)),
+            glm::vec3(wo.x, wo.y, std::max(wo.z - step, 0x1p-30f))};
+  }
+
+  Range rounded_pdf(const glm::vec3& wi, const glm::vec3& wo) const {
     const double here = s_.pdf(wi, wo);
     Range range{here, here};
-    for (const glm::vec3& w : {turned(wo, step), turned(wo, -step), glm::vec3(wo.x, wo.y, std::min(wo.z + step, 1.0f)),
-                               glm::vec3(wo.x, wo.y, std::max(wo.z - step, 0x1p-30f))})
-      range.see(s_.pdf(wi, w));
+    for (const glm::vec3& w : rounded(wo)) range.see(s_.pdf(wi, w));
     return range;
+  }
+
+  /// |invert() of a draw - (u, v)|, less what rounding of wo makes of it.
+  double square_error(const Point& p) const {
+    const auto u = s_.invert(wi_, p.s.wo);
+    const auto away = [&](const std::optional<glm::vec2>& a, const glm::vec2& b) {
+      return a ? std::max<double>(std::abs(a->x - b.x), std::abs(a->y - b.y)) : infinity;
+    };
+    const double error = away(u, p.u);
+    if (error <= o_.round_trip_bound || !u) return error;
+    double spread = 0;
+    for (const glm::vec3& w : rounded(p.s.wo))
+      if (const auto next = s_.invert(wi_, w)) spread = std::max(spread, away(next, *u));
+    return std::max(error - spread, 0.0);
   }
 
   /// How far pdf() of a draw is from the pdf that came with it, less rounding of (u, v) and wo.
@@ -305,8 +322,7 @@ class Run {
       if (!has_digits(p.s.pdf)) continue;
       back_and_forth(p.s.wo);
       if (!o_.one_to_one) continue;
-      const auto u = s_.invert(wi_, p.s.wo);
-      square.see(u ? std::max(std::abs(u->x - p.u.x), std::abs(u->y - p.u.y)) : infinity, p.s.wo);
+      square.see(square_error(p), p.s.wo);
     }
     for (int k = 0; k < o_.points; ++k) {
       const glm::vec3 w = any_direction();
@@ -328,7 +344,7 @@ class Run {
         rotation.see(frame_error(p.s.wo, wi, wo), p.s.wo);
         if (!o_.turns || !o_.continuous) continue;  // rounding of theta_i may choose another diagram
         const auto s = s_.sample(wi, p.u);
-        if (s) rotation.see(largest_component(s->wo, wo) / o_.direction_bound, p.s.wo);
+        if (s) rotation.see(direction_error(p.u, p.s, turned(s->wo, -angle)) / o_.direction_bound, p.s.wo);
       }
     }
     if (o_.symmetric) at_most("mirror", mirror.value, 1, "in units of the pdf bound, " + mirror.where);

@@ -38,8 +38,8 @@ struct InvariantOptions {
   /// rounding of (u, v) and wo makes of them. (Next to the horizon v and r have few digits left.)
   double pdf_bound = 2e-3, pdf_floor = 1e-4;
   double weight_bound = 1e-4;      ///< relative, of the weight against f_r cos theta_o / pdf
-  double round_trip_bound = 1e-4;  ///< of (u, v), absolute
-  double direction_bound = 2e-4;   ///< of directions, absolute, besides rounding of (u, v)
+  double round_trip_bound = 1e-4;  ///< of (u, v), absolute, besides rounding of wo
+  double direction_bound = 5e-4;   ///< of directions, absolute, besides rounding of (u, v)
   /// Weights and round trips are judged where the density is at least this share of the largest one
   /// met; elsewhere floats have no digits left.
   double density_floor = 1e-6;

@@ -1,8 +1,11 @@
+#include <gonio/brdf/exr/disk_image_file.h>
 #include <gonio/brdf/exr/stack_file.h>
 
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
+#include "../light_cases.h"
 #include "../table_files.h"
 
 // Writes a few small valid files of each format to the folders that the fuzzers start from:
@@ -50,5 +53,17 @@ int main(int argc, char** argv) {
   gonio::save_stack(folder / "stack" / "bare.exr", stack);
   stack.colour = gonio::Colour(3, 4, std::vector<glm::vec3>(24, glm::vec3(0.5f)));
   gonio::save_stack(folder / "stack" / "colour.exr", stack);
+
+  fs::create_directories(folder / "image");
+  gonio::DiskImage image(4);
+  image.at(1, 2) = 0.5;
+  gonio::save_disk_image(folder / "image" / "d.exr", image, "D");
+
+  const gonio::Luminaire light = gonio::testing::lambertian();
+  std::ostringstream ies, eulumdat;
+  gonio::write_ies(ies, gonio::to_ies(light));
+  gonio::write_eulumdat(eulumdat, gonio::to_eulumdat(light));
+  write(folder / "light" / "lambert.ies", ies.str());
+  write(folder / "light" / "lambert.ldt", eulumdat.str());
   return 0;
 }

@@ -1,19 +1,13 @@
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/mapping/error.h>
-#include <sys/mman.h>
-#include <unistd.h>
 
-#include <cmath>
-#include <cstdlib>
+#include "memory_file.h"
 
-// Bytes to a stack file; what loads is sampled. OpenEXR reads files only: one in memory.
+// Bytes to a stack file; what loads is sampled.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const int file = memfd_create("stack", 0);
-  static const std::string path = "/proc/self/fd/" + std::to_string(file);
-  if (file < 0 || ftruncate(file, 0) != 0 || pwrite(file, data, size, 0) != static_cast<ssize_t>(size)) std::abort();
   try {
-    const gonio::StackFile stack = gonio::load_stack(path);
-    const gonio::Stack<float> map(stack.diagrams, gonio::Interpolation::displacement);
+    const gonio::StackFile file = gonio::load_stack(gonio::fuzz::memory_file(data, size));
+    const gonio::Stack<float> map(file.diagrams, file.interpolation);
     for (const float theta_i : {0.0f, 0.7f, 1.57f})
       for (const float u : {0.0f, 0.3f, 1 - 0x1p-24f}) {
         const auto s = map.sample(theta_i, u, 1 - u);

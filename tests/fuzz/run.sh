@@ -14,7 +14,7 @@ cmake --build --preset fuzz
 
 mkdir -p build-fuzz/corpus build-fuzz/findings
 build-fuzz/tests/fuzz/fuzz_corpus build-fuzz/corpus
-for name in merl rgl mbsdf stack; do
+for name in merl rgl mbsdf stack image light; do
   echo "fuzz: $name"
   build-fuzz/tests/fuzz/fuzz_$name -max_total_time="$seconds" -timeout=20 -rss_limit_mb=3000 -max_len=65536 \
     -print_final_stats=1 -verbosity=0 -artifact_prefix=build-fuzz/findings/$name- build-fuzz/corpus/$name

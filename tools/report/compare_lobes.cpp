@@ -17,17 +17,6 @@ const MethodReport* find(const MaterialReport& material, const std::string& id) 
   return nullptr;
 }
 
-double mean_relvar(const MethodReport& method) {
-  double sum = 0;
-  int n = 0;
-  for (const auto& q : method.angles) {
-    if (q.theta_i > last_angle) continue;
-    sum += q.relvar;
-    ++n;
-  }
-  return sum / n;
-}
-
 double cost(const MethodReport& method) { return method.ns.sample * mean_relvar(method); }
 
 std::string number(double x, int digits = 2) {
@@ -60,6 +49,17 @@ std::string rounded(const std::string& description) {
 std::string times(double ratio) { return number(ratio) + "×"; }
 
 }  // namespace
+
+double mean_relvar(const MethodReport& method) {
+  double sum = 0;
+  int n = 0;
+  for (const auto& q : method.angles) {
+    if (q.theta_i > last_angle) continue;
+    sum += q.relvar;
+    ++n;
+  }
+  return sum / n;
+}
 
 std::optional<LobeComparison> compare_lobes(const MaterialReport& material) {
   const MethodReport* stack = find(material, "displacement");

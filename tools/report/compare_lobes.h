@@ -25,6 +25,9 @@ inline constexpr double lobes_enough_factor = 2;
 /// light that varies over the hemisphere adds more.
 inline constexpr double lobes_enough_relvar = 0.01;
 
+/// Over the report's angles up to 70 degrees.
+double mean_relvar(const MethodReport& method);
+
 /// Empty without both kinds of methods (a stack file has no lobes).
 std::optional<LobeComparison> compare_lobes(const MaterialReport& material);
 

@@ -1,10 +1,14 @@
 #include <gonio/tools/report/measure_material.h>
 
+#include <algorithm>
 #include <chrono>
 #include <fstream>
+#include <iterator>
 #include <mutex>
+#include <set>
 #include <thread>
 
+#include <gonio/tools/report/curves.h>
 #include <gonio/tools/report/timing.h>
 
 #include <gonio/brdf/baseline.h>
@@ -51,7 +55,8 @@ class Bench {
     owners_.push_back(std::move(sampler));
   }
 
-  std::vector<MethodReport> run(const Progress& progress) {
+  /// Measures all methods into the material, and then the curves.
+  void run(MaterialReport& material, const Progress& progress) {
     constexpr std::size_t angles = std::size(report_angles);
     std::mutex mutex;
     std::size_t done = 0;
@@ -70,10 +75,27 @@ class Bench {
       const std::lock_guard<std::mutex> lock(mutex);
       progress(static_cast<double>(++done) / static_cast<double>(jobs));
     });
-    return std::move(methods_);
+    add_curves(material);
+    material.methods = std::move(methods_);
   }
 
  private:
+  void add_curves(MaterialReport& material) {
+    // Grids are most of the page's bytes; those of these say little.
+    static const std::set<std::string> no_grid{"uniform", "cosine", "nearest", "lobes1", "lobes2", "lobes3", "displacement_small"};
+    for (const double theta_i : curve_angles) {
+      const auto k = std::find(std::begin(report_angles), std::end(report_angles), theta_i) - std::begin(report_angles);
+      const double albedo = static_cast<double>(luminance(glm::vec3(methods_.front().angles[static_cast<std::size_t>(k)].albedo_table)));
+      material.curves.push_back(table_curves(subjects_.front(), theta_i, albedo));
+      const nlohmann::json& theta_o = material.curves.back()["theta_o_deg"];
+      std::vector<nlohmann::json> curves(methods_.size());
+      parallel_for(methods_.size(), [&](std::size_t m) {
+        curves[m] = method_curves(subjects_[m], theta_i, theta_o, no_grid.count(methods_[m].id) == 0);
+      });
+      for (std::size_t m = 0; m < methods_.size(); ++m) methods_[m].curves.push_back(std::move(curves[m]));
+    }
+  }
+
   std::vector<MethodReport> methods_;
   std::vector<proof::Subject> subjects_;
   std::vector<std::shared_ptr<const void>> owners_;
@@ -157,7 +179,7 @@ void mark_choice(std::vector<MethodReport>& methods) {
 
 MaterialReport measure_stack_file(const std::filesystem::path& path, const Progress& progress) {
   const StackFile file = load_stack(path);
-  MaterialReport material{file.name, path.string(), "stack", std::filesystem::file_size(path), {}, nlohmann::json::array(), {}};
+  MaterialReport material{file.name, path.string(), "stack", std::filesystem::file_size(path), {}};
   const auto start = std::chrono::steady_clock::now();
   const auto sampler = std::make_shared<const Sampler>(load_sampler(path));
   const std::chrono::duration<double> build = std::chrono::steady_clock::now() - start;
@@ -165,7 +187,7 @@ MaterialReport measure_stack_file(const std::filesystem::path& path, const Progr
   params["self_contained"] = true;
   Bench bench;
   bench.add<Sampler>(to_string(file.interpolation), to_string(file.diagrams.chart), params, build.count(), sampler);
-  material.methods = bench.run(progress);
+  bench.run(material, progress);
   material.stack = sampler->stack();
   return material;
 }
@@ -176,7 +198,7 @@ MaterialReport measure_material(const std::filesystem::path& path, const ReportO
                                 const Progress& progress) {
   if (is_exr(path)) return measure_stack_file(path, progress);
   const auto table = std::make_shared<const BrdfTable>(load_input(path, options.policies));
-  MaterialReport material{table->info().name, table->info().source, table->info().format, table->info().source_bytes, {}, nlohmann::json::array(), {}};
+  MaterialReport material{table->info().name, table->info().source, table->info().format, table->info().source_bytes, {}};
 
   constexpr double building = 0.4;  // its share of the progress
   const auto start = std::chrono::steady_clock::now();
@@ -196,7 +218,7 @@ MaterialReport measure_material(const std::filesystem::path& path, const ReportO
   add_half_stacks(table, options.stack, bench, [&](double done) { progress(building * (1 + 2 * done) / 3); });
   if (const std::size_t bytes = add_lobes(table, material, bench); bytes > 0)
     add_small_stack(table, bytes, bench);
-  material.methods = bench.run([&](double done) { progress(building + (1 - building) * done); });
+  bench.run(material, [&](double done) { progress(building + (1 - building) * done); });
   mark_choice(material.methods);
   material.stack.emplace(grid, Interpolation::displacement);
   return material;

@@ -35,7 +35,7 @@ void add_report(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* verb = app.add_subcommand("report", "Measure how well materials are sampled, by every method");
   verb->add_option("IN", options->inputs, "Tables (MERL, RGL, MBSDF), stack files, fit.json, or luminaires (IES, EULUMDAT, light EXR)")->required();
-  verb->add_option("-o,--output", options->directory, "Folder for report.json and report.md")->required();
+  verb->add_option("-o,--output", options->directory, "Folder for report.html, report.md and report.json")->required();
   verb->add_option_function<std::string>(
           "--grid",
           [options](const std::string& text) {
@@ -68,7 +68,7 @@ void add_report(CLI::App& app) {
     }
     write_report(options->directory, report);
     print_summary(std::cout, report);
-    std::cout << "written: " << (options->directory / "report.md").string() << ", report.json\n";
+    std::cout << "written: " << (options->directory / "report.html").string() << ", report.md, report.json\n";
   });
 }
 

@@ -29,6 +29,7 @@ struct MethodReport {
   std::vector<proof::Quality> angles;
   proof::Coherence coherence;      ///< at coherence_angle
   proof::Convergence convergence;  ///< at coherence_angle
+  nlohmann::json curves = nlohmann::json::array();  ///< method_curves() at curve_angles
 };
 
 struct MaterialReport {
@@ -36,7 +37,8 @@ struct MaterialReport {
   std::uint64_t source_bytes = 0;
   std::vector<MethodReport> methods;
   nlohmann::json fits = nlohmann::json::array();  ///< of one, two and three lobes; empty for a stack file
-  std::optional<Stack<float>> stack;  ///< of `displacement`, for the figure; not part of the JSON
+  nlohmann::json curves = nlohmann::json::array();  ///< table_curves() at curve_angles
+  std::optional<Stack<float>> stack{};  ///< of `displacement`, for the figure; not part of the JSON
 };
 
 /// The emission of one luminaire, sampled by every method.

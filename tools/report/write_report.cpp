@@ -2,6 +2,8 @@
 
 #include <gonio/tools/report/compare_lobes.h>
 #include <gonio/tools/report/grid_figure.h>
+#include <gonio/tools/report/verdict.h>
+#include <gonio/tools/report/write_page.h>
 
 #include <algorithm>
 #include <cmath>
@@ -40,6 +42,21 @@ std::string number(double x, int digits = 3) {
 
 std::string kib(std::size_t bytes) { return number(static_cast<double>(bytes) / 1024, 3) + " KiB"; }
 
+/// The most efficient method of each material.
+void write_overview(std::ostream& out, const Report& report) {
+  if (report.materials.empty()) return;
+  out << "\nEfficiency is 1 / (ns of a sample × (mean relvar from 2° to 70° + 0.001)).\n\n"
+         "| material | most efficient | sample ns | mean relvar | efficiency | worst weight | bytes |\n|---|---|---|---|---|---|---|\n";
+  for (const MaterialReport& material : report.materials) {
+    const MethodReport* best = best_method(material);
+    if (!best) continue;
+    double worst = 0;
+    for (const auto& q : best->angles) worst = std::max(worst, q.max_weight);
+    out << "| " << material.name << " | " << title(*best) << " | " << number(best->ns.sample) << " | " << number(mean_relvar(*best), 2) << " | "
+        << number(efficiency(*best)) << " | " << number(worst) << " | " << kib(best->bytes) << " |\n";
+  }
+}
+
 void write_markdown(std::ostream& out, const Report& report) {
   out << "# Sampling quality\n\ngonio " GONIO_VERSION ", " << report.machine.cpu << ", " << report.machine.compiler << ", "
       << report.machine.threads << " threads.\n\n"
@@ -47,16 +64,17 @@ void write_markdown(std::ostream& out, const Report& report) {
          "variance of a white-furnace estimate, 0 is perfect, and the number of samples for a given noise is in proportion to it. "
          "Times are nanoseconds a call on one thread. A chi-square p below "
       << number(report_significance(report), 2) << " (0.01 for the whole report, Sidak) says that draws do not follow the pdf.\n";
+  write_overview(out, report);
   for (const MaterialReport& material : report.materials) {
-    out << "\n## " << material.name << "\n\n" << material.format << ", " << kib(material.source_bytes) << ", `" << material.source << "`\n\n![grid](" << material.name << ".svg)\n\n"
-        << "| method | chart | bytes | build s | sample ns | pdf ns | eval ns |";
+    out << "\n## " << material.name << "\n\n" << material.format << ", " << kib(material.source_bytes) << ", `" << material.source << "`\n\n**" << verdict(material) << "**\n\n![grid](" << material.name << ".svg)\n\n"
+        << "| method | chart | bytes | build s | sample ns | pdf ns | eval ns | efficiency |";
     for (const double angle : report_angles) out << " relvar " << angle << "° |";
-    out << "\n|---|---|---|---|---|---|---|";
+    out << "\n|---|---|---|---|---|---|---|---|";
     for (std::size_t k = 0; k < std::size(report_angles); ++k) out << "---|";
     out << '\n';
     for (const MethodReport& m : material.methods) {
       out << "| " << m.id << " | " << m.chart << " | " << kib(m.bytes) << " | " << number(m.build_seconds, 2) << " | " << number(m.ns.sample)
-          << " | " << number(m.ns.pdf) << " | " << number(m.ns.eval) << " |";
+          << " | " << number(m.ns.pdf) << " | " << number(m.ns.eval) << " | " << number(efficiency(m)) << " |";
       for (const auto& q : m.angles) out << ' ' << number(q.relvar, 2) << " |";
       out << '\n';
     }
@@ -115,14 +133,21 @@ nlohmann::json to_json(const Report& report) {
                            {"stretch_p99", m.coherence.stretch_p99},
                            {"tears", m.coherence.tears + m.coherence.folds}}},
                          {"qmc_slope", m.convergence.qmc_slope},
-                         {"mc_slope", m.convergence.mc_slope}});
+                         {"mc_slope", m.convergence.mc_slope},
+                         {"qmc_error", m.convergence.qmc_error},
+                         {"mc_error", m.convergence.mc_error},
+                         {"mean_relvar", mean_relvar(m)},
+                         {"efficiency", efficiency(m)},
+                         {"curves", m.curves}});
     }
     materials.push_back({{"name", material.name},
                          {"source", material.source},
                          {"format", material.format},
                          {"source_bytes", material.source_bytes},
                          {"methods", std::move(methods)},
-                         {"fits", material.fits}});
+                         {"fits", material.fits},
+                         {"curves", material.curves},
+                         {"verdict", verdict(material)}});
     if (const auto comparison = compare_lobes(material))
       materials.back()["lobes_against_stack"] = to_json(*comparison);
   }
@@ -145,7 +170,9 @@ void write_report(const std::filesystem::path& directory, const Report& report) 
   if (failed) throw Error(directory.string() + ": cannot be made: " + failed.message() + ", expected a folder to write to");
   for (const MaterialReport& material : report.materials)
     if (material.stack) write_grid_figure(directory / (material.name + ".svg"), material.name, *material.stack);
-  write_stream_atomically(directory / "report.json", [&](std::ostream& out) { out << to_json(report).dump(1) << '\n'; });
+  const nlohmann::json json = to_json(report);
+  write_stream_atomically(directory / "report.json", [&](std::ostream& out) { out << json.dump(1) << '\n'; });
+  write_stream_atomically(directory / "report.html", [&](std::ostream& out) { write_page(out, json); });
   write_stream_atomically(directory / "report.md", [&](std::ostream& out) { write_markdown(out, report); });
 }
 

@@ -1,0 +1,24 @@
+#include <gonio/mapping/error.h>
+#include <gonio/mapping/light/eulumdat.h>
+#include <gonio/mapping/light/ies.h>
+#include <gonio/mapping/light/luminaire.h>
+
+#include <cmath>
+#include <cstdlib>
+
+// Bytes to a luminaire file of either format; what can be used has a flux.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace gonio;
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  const LightFormat format = light_format(text);
+  if (format == LightFormat::unknown) return 0;
+  try {
+    Deviations deviations;
+    const Luminaire light = format == LightFormat::ies
+                                ? to_luminaire(read_ies(text, "fuzz", deviations), "fuzz", {}, deviations)
+                                : to_luminaire(read_eulumdat(text, "fuzz", deviations), "fuzz", {}, deviations);
+    if (!(flux(light.diagram) >= 0)) std::abort();
+  } catch (const Error&) {
+  }
+  return 0;
+}
