@@ -5,28 +5,6 @@
 
 namespace gonio {
 
-/// cos(acos(x) / 3) for x in [-1, 1].
-template <class T>
-T cos_third(T x) noexcept {
-  using std::acos, std::cos;  // other types of T bring their own
-  return cos(acos(x) / 3);
-}
-
-/// The same without library calls. Its square root at x = -1 taken out, it is analytic: a polynomial through 9
-/// Chebyshev nodes of sqrt((1 + x) / 2), whose own relative error is 7e-9.
-inline float cos_third(float x) noexcept {
-  const float y = std::sqrt(0.5f + 0.5f * x);
-  float p = -6.260453235e-4f;
-  p = p * y + 3.654119569e-3f;
-  p = p * y - 1.023750833e-2f;
-  p = p * y + 1.960032094e-2f;
-  p = p * y - 3.192541214e-2f;
-  p = p * y + 5.327935085e-2f;
-  p = p * y - 1.110944928e-1f;
-  p = p * y + 5.773496614e-1f;
-  return p * y + 0.5000000037f;
-}
-
 /// One cell of a meridian between the radii r0 and r0 + h, with a density that is linear in r
 /// (Havran et al. 2003, eq. 7): d(s) = d0 + (d1 - d0) s at r(s) = r0 + h s, s in [0, 1].
 /// r0 >= 0, h > 0, d0, d1 >= 0.
@@ -53,7 +31,7 @@ struct RadialCell {
   ///
   /// @param tau in (0, 1]. @pre mass(1) > 0.
   T invert(T tau) const noexcept {
-    using std::cbrt, std::sqrt;  // other types of T bring their own
+    using std::acos, std::cbrt, std::cos, std::sqrt;  // other types of T bring their own
     const T delta = d1 - d0;
     const T scale = 1 / (r0 * (d0 + d1) + h * (d0 + 2 * d1) / 3);
     const T c = 2 * r0 * d0 * scale;
@@ -69,7 +47,7 @@ struct RadialCell {
       const T t = cbrt(q2 + sqrt(q2 - cube) * sqrt(q2 + cube));
       z = t > 0 ? t + p3 / t : T(0);
     } else {  // three: the trigonometric form; the angle is in [0, pi/3], so the cosine is >= 1/2
-      z = 2 * root_p3 * cos_third(std::max(q2 / cube, T(-1)));
+      z = 2 * root_p3 * cos(acos(std::max(q2 / cube, T(-1))) / 3);
     }
     const T denominator = z + c / 3;
     return denominator > tau ? tau / denominator : T(1);
