@@ -1,0 +1,47 @@
+#include <gonio/brdf/batch/batch_layout.h>
+
+#include <algorithm>
+#include <limits>
+
+#include <gonio/mapping/error.h>
+
+namespace gonio {
+
+BatchLayout::BatchLayout(const Stack<float>& stack)
+    : angles(static_cast<int>(stack.theta_i().size())),
+      meridians(0),
+      parallels(0),
+      stride(0),
+      half_azimuth(stack.diagrams().front().azimuth() == Azimuth::half),
+      half_chart(stack.chart() == Chart::half),
+      interpolation(stack.interpolation()),
+      values(stack.theta_i()) {
+  if (interpolation == Interpolation::mixture)
+    throw Error("batch: interpolation: found mixture, expected nearest, displacement or blend");
+  for (const Diagram<float>& d : stack.diagrams()) {
+    meridians = std::max(meridians, d.meridians());
+    parallels = std::max(parallels, d.parallels());
+  }
+  const std::size_t m = static_cast<std::size_t>(meridians), n = static_cast<std::size_t>(parallels);
+  const std::size_t block = 3 * m + n + 2 * m * n, size = values.size() + values.size() * block;
+  if (size > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+    throw Error("batch: found " + std::to_string(size) + " values, expected fewer than 2^31");
+  stride = static_cast<int>(block);
+  values.reserve(size);
+  for (const Diagram<float>& d : stack.diagrams()) {
+    const std::size_t rows = static_cast<std::size_t>(d.meridians()), columns = static_cast<std::size_t>(d.parallels());
+    const float* const own = d.values().data();
+    const float *own_r = own + 2 * rows, *own_density = own_r + columns, *own_cumulative = own_density + rows * columns;
+    const auto row = [&](std::size_t i) { return std::min(i, rows - 1); };
+    const auto column = [&](std::size_t j) { return std::min(j, columns - 1); };
+    for (std::size_t i = 0; i < m; ++i) values.push_back(own[row(i)]);
+    for (std::size_t i = 0; i < m; ++i) values.push_back(own[rows + row(i)]);
+    for (std::size_t i = 0; i < m; ++i) values.push_back(own_cumulative[row(i) * columns + columns - 1]);
+    for (std::size_t j = 0; j < n; ++j) values.push_back(own_r[column(j)]);
+    for (const float* own_rows : {own_density, own_cumulative})
+      for (std::size_t i = 0; i < m; ++i)
+        for (std::size_t j = 0; j < n; ++j) values.push_back(own_rows[row(i) * columns + column(j)]);
+  }
+}
+
+}  // namespace gonio

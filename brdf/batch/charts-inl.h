@@ -1,0 +1,153 @@
+// The square, the hemisphere and the half-vector chart on vectors, once per instruction set: included by kernels.cpp alone.
+#if defined(GONIO_BATCH_CHARTS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef GONIO_BATCH_CHARTS_INL_H
+#undef GONIO_BATCH_CHARTS_INL_H
+#else
+#define GONIO_BATCH_CHARTS_INL_H
+#endif
+
+#include <gonio/brdf/batch/lanes-inl.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace gonio {
+namespace HWY_NAMESPACE {
+
+struct Direction {
+  V x, y, z;
+};
+
+/// square_to_disk() and its fold onto a half diagram: the two numbers of the diagram.
+struct Folded {
+  V u, v;
+  M mirrored;
+};
+HWY_INLINE Folded square_to_diagram(V u, V v, bool half) {
+  const V x = hn::Sub(hn::Add(u, u), set(1)), y = hn::Sub(hn::Add(v, v), set(1));
+  const M beside = hn::Gt(hn::Abs(x), hn::Abs(y));
+  const V radius = hn::IfThenElse(beside, x, y), across = hn::IfThenElse(beside, y, x);
+  const V part = hn::Mul(set(0.125f), hn::IfThenElseZero(hn::Ne(radius, zero()), hn::Div(across, radius)));
+  const V axis = hn::IfThenElse(hn::Gt(radius, zero()), zero(), set(0.5f));
+  V turn = hn::IfThenElse(beside, hn::Add(axis, part), hn::Sub(hn::Add(axis, set(0.25f)), part));
+  turn = hn::IfThenElse(hn::Lt(turn, zero()), hn::Add(turn, set(1)), turn);
+  turn = hn::IfThenElseZero(hn::And(hn::Lt(turn, set(1)), hn::Ne(radius, zero())), turn);
+  const V r2 = hn::Min(hn::Mul(radius, radius), set(1));
+  if (!half) return {turn, r2, hn::MaskFromVec(zero())};
+  const M mirrored = hn::Gt(turn, set(0.5f));
+  return {hn::Mul(set(2), hn::IfThenElse(mirrored, hn::Sub(set(1), turn), turn)), r2, mirrored};
+}
+
+/// The inverse of square_to_diagram().
+struct Square {
+  V u, v;
+};
+HWY_INLINE Square diagram_to_square(V u, V r2, M mirrored, bool half) {
+  V turn = u;
+  if (half) {
+    turn = hn::Mul(set(0.5f), u);
+    turn = hn::IfThenElse(hn::And(mirrored, hn::Gt(u, zero())), hn::Sub(set(1), turn), turn);
+  }
+  turn = hn::IfThenElseZero(hn::Lt(turn, set(1)), turn);
+  const V radius = hn::Sqrt(hn::Min(r2, set(1)));
+  // A triangle wave of period 1 and slope 8, cut at one: cosine and sine of the square.
+  const V octant = hn::Mul(set(8), turn);
+  const V from4 = hn::Abs(hn::Sub(octant, set(4)));                        // 4 ... 0 ... 4
+  const V x = hn::Min(hn::Max(hn::Sub(from4, set(2)), set(-1)), set(1));  // 1 at 0, -1 at 4
+  const V from6 = hn::Abs(hn::Sub(octant, set(6)));
+  const V from2 = hn::Sub(set(2), hn::Abs(hn::Sub(octant, set(2))));
+  const V wave = hn::IfThenElse(hn::Gt(octant, set(4)), hn::Sub(from6, set(2)), from2);
+  const V y = hn::Min(hn::Max(wave, set(-1)), set(1));
+  return {clamp01(hn::Mul(set(0.5f), hn::MulAdd(radius, x, set(1)))),
+          clamp01(hn::Mul(set(0.5f), hn::MulAdd(radius, y, set(1))))};
+}
+
+/// polar_to_direction() from sine and cosine of phi.
+HWY_INLINE Direction to_hemisphere(V r, SinCos phi) {
+  const V sin_theta = hn::Mul(r, hn::Sqrt(hn::NegMulAdd(r, r, set(2))));
+  return {hn::Mul(sin_theta, phi.cos), hn::Mul(sin_theta, phi.sin), hn::Mul(hn::Sub(set(1), r), hn::Add(set(1), r))};
+}
+
+/// A point of the disk, phi as its distance from 0, and HalfVectorChart's Jacobian.
+struct DiskPlace {
+  V r, phi, jacobian;
+};
+
+/// direction_to_polar().
+HWY_INLINE DiskPlace from_hemisphere(const Direction& w) {
+  const V across = hn::MulAdd(w.x, w.x, hn::Mul(w.y, w.y));
+  const V r2 = hn::IfThenElse(hn::Lt(w.z, set(0.5f)), hn::Sub(set(1), w.z), hn::Div(across, hn::Add(set(1), w.z)));
+  return {hn::Min(hn::Sqrt(r2), set(1)), abs_atan2(w.y, w.x), set(1)};
+}
+
+/// HalfVectorChart.
+struct HalfChart {
+  V sin, cos, scale;
+
+  explicit HWY_INLINE HalfChart(V theta_i) {
+    const auto [s, c] = sin_cos(hn::Min(hn::Max(theta_i, zero()), set(HalfVectorChart<float>::largest_theta_i)));
+    sin = s, cos = c;
+    scale = hn::Div(hn::Mul(set(1.41421356f), hn::Add(hn::Sqrt(hn::Add(set(1), c)), set(1))), c);
+  }
+
+  struct Meridian {
+    V m, cos_max, sin_max, norm;
+  };
+  HWY_INLINE Meridian meridian(V c) const {
+    const V along = hn::Mul(sin, c), norm = hn::Sqrt(hn::MulAdd(cos, cos, hn::Mul(along, along)));
+    const V inverse = hn::Div(set(1), norm);
+    const V cos2 = hn::Neg(hn::Mul(along, inverse)), sin2 = hn::Mul(cos, inverse);
+    const V large = hn::MulAdd(set(0.5f), hn::Abs(cos2), set(0.5f));
+    const V small = hn::Div(hn::Mul(sin2, sin2), hn::Mul(set(4), large));
+    const M low = hn::Gt(cos2, zero());
+    const V cos_max = hn::Sqrt(hn::IfThenElse(low, large, small)), sin_max2 = hn::IfThenElse(low, small, large);
+    return {hn::Div(sin_max2, hn::Add(set(1), cos_max)), cos_max, hn::Sqrt(sin_max2), norm};
+  }
+
+  struct Image {
+    Direction wo;
+    V jacobian;
+  };
+  HWY_INLINE Image direction(V r, SinCos phi) const {
+    const Meridian h = meridian(phi.cos);
+    const V one = set(1), q = hn::Mul(r, r), rest = hn::Mul(hn::Sub(one, r), hn::Add(one, r));
+    const V d = hn::MulAdd(scale, rest, hn::Div(q, h.m)), inverse_d = hn::Div(one, d);
+    const V below = hn::Mul(hn::Mul(scale, h.m), hn::Mul(rest, inverse_d));
+    const V cos_h = hn::Add(h.cos_max, below);
+    const V sin_h = hn::Sqrt(hn::Mul(hn::Mul(q, inverse_d), hn::Add(one, cos_h)));
+    const V sin_left = hn::Div(hn::Mul(below, hn::Add(cos_h, h.cos_max)),
+                               hn::MulAdd(h.sin_max, cos_h, hn::Mul(h.cos_max, sin_h)));
+    const V z = hn::Mul(hn::Mul(hn::Add(h.norm, h.norm), sin_left),
+                        hn::MulAdd(h.cos_max, cos_h, hn::Mul(h.sin_max, sin_h)));
+    const V cos_d = hn::Div(hn::Add(cos, z), hn::Add(cos_h, cos_h));
+    const V along = hn::Mul(hn::Add(cos_d, cos_d), sin_h);
+    return {{hn::MulSub(along, phi.cos, sin), hn::Mul(along, phi.sin), z},
+            hn::Mul(hn::Mul(hn::Mul(set(4), cos_d), scale), hn::Mul(inverse_d, inverse_d))};
+  }
+
+  HWY_INLINE DiskPlace disk(const Direction& wo) const {
+    const V one = set(1);
+    const V x = hn::Add(sin, wo.x), y = wo.y, z = hn::Add(cos, wo.z);
+    const V across2 = hn::MulAdd(x, x, hn::Mul(y, y)), across = hn::Sqrt(across2);
+    const V length = hn::Sqrt(hn::MulAdd(z, z, across2));
+    const V rise = hn::Div(across2, hn::Mul(length, hn::Add(length, z)));  // 1 - cos theta_h
+    const M off_pole = hn::Gt(across, zero());
+    const Meridian h = meridian(hn::IfThenElse(off_pole, hn::Div(x, across), one));
+    const V sin2 = hn::Min(hn::Div(wo.z, h.norm), one), inverse = hn::Div(one, length), cos_h = hn::Mul(z, inverse);
+    const V root = hn::Sqrt(hn::Mul(hn::Sub(one, sin2), hn::Add(one, sin2)));
+    const V sin_left = hn::Div(sin2, hn::Sqrt(hn::MulAdd(set(2), root, set(2))));
+    const V near = hn::Div(
+        hn::Mul(sin_left, hn::MulAdd(h.sin_max, cos_h, hn::Mul(h.cos_max, hn::Mul(across, inverse)))),
+        hn::Add(cos_h, h.cos_max));
+    const V below = hn::IfThenElse(hn::Gt(hn::Add(rise, rise), h.m), near, hn::Sub(h.m, rise));
+    const V steep = hn::Mul(scale, rise);
+    const V q = hn::Min(hn::Div(steep, hn::Add(hn::Div(below, h.m), steep)), one);
+    const V d = hn::MulAdd(scale, hn::Sub(one, q), hn::Div(q, h.m));
+    return {hn::Sqrt(q), hn::IfThenElseZero(off_pole, abs_atan2(y, x)),
+            hn::Div(hn::Mul(hn::Mul(set(2), length), scale), hn::Mul(d, d))};
+  }
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace gonio
+HWY_AFTER_NAMESPACE();
+
+#endif
