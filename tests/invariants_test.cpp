@@ -73,7 +73,7 @@ const Known known[] = {
 const Known known_at_grazing[] = {
     {"", {"tears"}, "the map is too steep for the cells in which tears are looked for"},
     {"spike", {"albedo"}, "the quadrature misses the peaks that the spike is there"},
-    {"zero-table", {"mass", "jumps"}, "the lobe in its stead is smooth in half vectors: as above, a peak at the horizon"},
+    {"zero-table", {"mass", "jumps", "chi_square", "moments"}, "the lobe in its stead is smooth in half vectors: as above, a peak at the horizon"},
 };
 const Known known_of_half[] = {{"spike", {"tears"}, "the same of a spike of one cell"}};
 
