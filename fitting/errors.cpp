@@ -1,7 +1,7 @@
 #include <gonio/brdf/parallel.h>
 #include <gonio/fitting/delta_e.h>
 #include <gonio/fitting/errors.h>
-#include <gonio/fitting/lobes/angles.h>
+#include <gonio/fitting/half_vectors.h>
 
 #include <cmath>
 #include <glm/common.hpp>
@@ -25,38 +25,25 @@ struct Row {  // of one incident angle
 
 Row integrate_row(const BrdfFunction& table, const BrdfFunction& model, double theta_i,
                   double cutoff) {
-  constexpr int n_theta = 96, n_phi = 24;
   constexpr double log_offset = 1e-3;
   const double lowest = std::cos(cutoff);
   const glm::dvec3 wi(std::sin(theta_i), 0, std::cos(theta_i));
   Row row;
-  for (int i = 0; i < n_theta; ++i) {
-    // Half vectors dense about the normal, where narrow lobes are.
-    const double s = (i + 0.5) / n_theta, theta = s * s * s * pi<double> / 2;
-    const double d_theta = 3 * s * s * pi<double> / 2 / n_theta;
-    for (int j = 0; j < n_phi; ++j) {
-      const double phi = pi<double> * (j + 0.5) / n_phi;
-      const glm::dvec3 h(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
-                         std::cos(theta));
-      const double cos_d = glm::dot(wi, h);
-      const glm::dvec3 wo = reflect_about(wi, h);
-      if (!(cos_d > 0 && wo.z > 0)) continue;
-      const double d_wo = 4 * cos_d * std::sin(theta) * d_theta * 2 * pi<double> / n_phi;
-      const double d_wi = std::sin(theta_i);
-      const glm::dvec3 a = glm::dvec3(table(glm::vec3(wi), glm::vec3(wo))) * wo.z;
-      const glm::dvec3 b = glm::dvec3(model(glm::vec3(wi), glm::vec3(wo))) * wo.z;
-      Sums& sums = wi.z >= lowest && wo.z >= lowest ? row.inside : row.beyond;
-      for (int c = 0; c < 3; ++c) {
-        const double logarithm = std::log((b[c] + log_offset) / (a[c] + log_offset));
-        sums.measure += d_wo * d_wi;
-        sums.square += (b[c] - a[c]) * (b[c] - a[c]) * d_wo * d_wi;
-        sums.log_square += logarithm * logarithm * d_wo * d_wi;
-        sums.difference += std::fabs(b[c] - a[c]) * wi.z * d_wo * d_wi;
-        sums.table += a[c] * wi.z * d_wo * d_wi;
-        row.albedo_difference[c] += (b[c] - a[c]) * d_wo;
-      }
+  detail::for_half_vectors(wi, 0, [&](const glm::dvec3& wo, double d_wo) {
+    const double d_wi = std::sin(theta_i);
+    const glm::dvec3 a = glm::dvec3(table(glm::vec3(wi), glm::vec3(wo))) * wo.z;
+    const glm::dvec3 b = glm::dvec3(model(glm::vec3(wi), glm::vec3(wo))) * wo.z;
+    Sums& sums = wi.z >= lowest && wo.z >= lowest ? row.inside : row.beyond;
+    for (int c = 0; c < 3; ++c) {
+      const double logarithm = std::log((b[c] + log_offset) / (a[c] + log_offset));
+      sums.measure += d_wo * d_wi;
+      sums.square += (b[c] - a[c]) * (b[c] - a[c]) * d_wo * d_wi;
+      sums.log_square += logarithm * logarithm * d_wo * d_wi;
+      sums.difference += std::fabs(b[c] - a[c]) * wi.z * d_wo * d_wi;
+      sums.table += a[c] * wi.z * d_wo * d_wi;
+      row.albedo_difference[c] += (b[c] - a[c]) * d_wo;
     }
-  }
+  });
   return row;
 }
 

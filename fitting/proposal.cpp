@@ -1,5 +1,6 @@
 #include <ceres/ceres.h>
 #include <gonio/brdf/parallel.h>
+#include <gonio/fitting/half_vectors.h>
 #include <gonio/fitting/proposal.h>
 
 #include <algorithm>
@@ -13,25 +14,7 @@ namespace {
 
 constexpr int shape_size = 3;
 constexpr double min_alpha = 0.002, max_alpha = 4, max_shear = 2;
-
-// theta_h spaced as the cube; phi over half the circle by mirror symmetry.
-template <class F>
-void for_half_vectors(const glm::dvec3& wi, const F& f) {
-  constexpr int n_theta = 96, n_phi = 24;
-  for (int i = 0; i < n_theta; ++i) {
-    const double s = (i + 0.5) / n_theta, theta = s * s * s * pi<double> / 2;
-    const double d_theta = 3 * s * s * pi<double> / 2 / n_theta;
-    for (int j = 0; j < n_phi; ++j) {
-      const double phi = pi<double> * (j + 0.5) / n_phi;
-      const glm::dvec3 h(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
-                         std::cos(theta));
-      const double cos_d = glm::dot(wi, h);
-      const glm::dvec3 wo = reflect_about(wi, h);
-      if (!(cos_d > 1e-4 && wo.z > 0)) continue;
-      f(wo, 4 * cos_d * std::sin(theta) * d_theta * 2 * pi<double> / n_phi);
-    }
-  }
-}
+constexpr double least_cos_d = 1e-4;  // of the half vectors that the quadratures look at
 
 glm::dvec3 incident(double theta_i) { return {std::sin(theta_i), 0, std::cos(theta_i)}; }
 
@@ -220,7 +203,7 @@ Quadrature quadrature(const BrdfFunction& f, double theta_i) {
   Quadrature result;
   result.wi = incident(theta_i);
   double total = 0;
-  for_half_vectors(result.wi, [&](const glm::dvec3& wo, double solid_angle) {
+  for_half_vectors(result.wi, least_cos_d, [&](const glm::dvec3& wo, double solid_angle) {
     const double value = luminance(f(glm::vec3(result.wi), glm::vec3(wo))) * wo.z;
     result.points.push_back({wo, solid_angle, value});
     total += value * solid_angle;
@@ -245,7 +228,7 @@ Proposal albedo_proposal(const LobeModel& model, double theta_i, double cosine_s
       proposal.weight.push_back(0);
     }
     const LobeModel single{"", {lobe}};
-    for_half_vectors(wi, [&](const glm::dvec3& wo, double solid_angle) {
+    for_half_vectors(wi, least_cos_d, [&](const glm::dvec3& wo, double solid_angle) {
       proposal.weight[part] += luminance(glm::vec3(single.eval(wi, wo))) * wo.z * solid_angle;
     });
   }

@@ -29,12 +29,8 @@ struct ShearedGgx {
     using Vec = glm::vec<3, T>;
     const Vec seen = glm::normalize(Vec(alpha_x * wi.x, T(0), shear * wi.x + wi.z));
     const Vec t1(T(0), T(1), T(0)), t2(-seen.z, T(0), seen.x);  // t2 = seen x t1
-    const T r = std::sqrt(u), phi = T(2) * pi<T> * v, s = T(0.5) * (T(1) + seen.z);
-    const T p1 = r * std::cos(phi);
-    const T p1_rest = std::sqrt(std::fmax(T(0), T(1) - p1 * p1));
-    const T p2 = (T(1) - s) * p1_rest + s * r * std::sin(phi);
-    const T p3 = std::sqrt(std::fmax(T(0), T(1) - p1 * p1 - p2 * p2));
-    const Vec n = p1 * t1 + p2 * t2 + p3 * seen;
+    const Vec p = visible_point(seen.z, u, v);
+    const Vec n = p.x * t1 + p.y * t2 + p.z * seen;
     const T up = std::fmax(T(1e-12), n.z);
     const Vec h = glm::normalize(Vec(alpha_x * n.x + shear * up, alpha_y * n.y, up));
     Vec wo = glm::normalize(reflect_about(wi, h));

@@ -46,6 +46,18 @@ glm::vec<3, T> polar(T cos_theta, T sin2_theta, T v) {
   return {sin_theta * std::cos(phi), sin_theta * std::sin(phi), cos_theta};
 }
 
+/// A point of the half of the unit sphere that is seen from a direction whose cosine to the pole is
+/// cos_theta, uniform on its visible projection: the components along t1, t2 and the direction itself
+/// (Heitz 2018, "Sampling the GGX distribution of visible normals", section 3). u, v in [0, 1).
+template <class T>
+glm::vec<3, T> visible_point(T cos_theta, T u, T v) {
+  const T r = std::sqrt(u), phi = T(2) * pi<T> * v, s = T(0.5) * (T(1) + cos_theta);
+  const T p1 = r * std::cos(phi);
+  const T p1_rest = std::sqrt(std::fmax(T(0), T(1) - p1 * p1));
+  const T p2 = (T(1) - s) * p1_rest + s * r * std::sin(phi);
+  return {p1, p2, std::sqrt(std::fmax(T(0), T(1) - p1 * p1 - p2 * p2))};
+}
+
 /// A half vector of given tan^2(theta) at azimuth 2 pi v.
 template <class T>
 glm::vec<3, T> half_vector(T tan2, T v) {

@@ -32,12 +32,8 @@ struct Ggx {
     const Vec t1 = length2 > T(0) ? Vec(-stretched.y, stretched.x, T(0)) / std::sqrt(length2)
                                   : Vec(T(1), T(0), T(0));
     const Vec t2 = glm::cross(stretched, t1);
-    const T r = std::sqrt(u), phi = T(2) * pi<T> * v, s = T(0.5) * (T(1) + stretched.z);
-    const T p1 = r * std::cos(phi);
-    const T p1_rest = std::sqrt(std::fmax(T(0), T(1) - p1 * p1));
-    const T p2 = (T(1) - s) * p1_rest + s * r * std::sin(phi);
-    const T p3 = std::sqrt(std::fmax(T(0), T(1) - p1 * p1 - p2 * p2));
-    const Vec n = p1 * t1 + p2 * t2 + p3 * stretched;
+    const Vec p = visible_point(stretched.z, u, v);
+    const Vec n = p.x * t1 + p.y * t2 + p.z * stretched;
     const Vec h = glm::normalize(Vec(alpha * n.x, alpha * n.y, std::fmax(T(1e-12), n.z)));
     const Vec wo = reflect_about(wi, h);
     if (!(wo.z > T(0))) return std::nullopt;
