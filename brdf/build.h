@@ -37,7 +37,7 @@ double disk_density(const BrdfTable& table, Chart chart, double theta_i, Polar<d
 /// Builds the diagrams of a table: each fitted to its incident angle (fit_diagram()), the angles
 /// placed where the interpolation between their neighbours fails (displacement, or blend), measured by
 /// the relative variance at three angles between them. Stacks for `blend` have the lines that serve all
-/// incident angles best (fit_lines()). If the bytes do not suffice for the tolerance, it is relaxed as long as that
+/// incident angles best (LineFit). If the bytes do not suffice for the tolerance, it is relaxed as long as that
 /// lowers the mean error. Deterministic. Uses all cores; the result does not depend on their number.
 ///
 /// A table that reflects nothing at an angle gets a cosine lobe there.

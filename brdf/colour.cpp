@@ -5,30 +5,42 @@
 #include <string>
 
 #include <gonio/brdf/parallel.h>
+#include <gonio/mapping/code16.h>
 #include <gonio/mapping/error.h>
 
 namespace gonio {
 
-Colour::Colour(std::size_t angles, int side, std::vector<glm::vec3> values)
-    : side_(side), values_(std::move(values)) {
+Colour::Colour(std::vector<float> theta_i, int side, const std::vector<glm::vec3>& values)
+    : side_(side), theta_i_(std::move(theta_i)) {
   if (side < 2 || side % 2 != 0)
     throw Error("colour: side: found " + std::to_string(side) + ", expected an even number >= 2");
-  const std::size_t expected = angles * static_cast<std::size_t>(side) * static_cast<std::size_t>(side / 2);
-  if (values_.size() != expected)
-    throw Error("colour: found " + std::to_string(values_.size()) + " values, expected " + std::to_string(expected));
-  for (const glm::vec3& w : values_)
-    for (int c = 0; c < 3; ++c)
+  if (theta_i_.empty()) throw Error("colour: theta_i: found no angles, expected at least one");
+  for (std::size_t k = 0; k < theta_i_.size(); ++k)
+    if (!(theta_i_[k] >= 0 && theta_i_[k] <= pi<float> / 2 + 1e-6f) || (k > 0 && !(theta_i_[k] > theta_i_[k - 1])))
+      throw Error("colour: theta_i[" + std::to_string(k) + "]: found " + std::to_string(theta_i_[k]) +
+                  ", expected ascending angles in 0 to pi/2");
+  const std::size_t expected = theta_i_.size() * static_cast<std::size_t>(side) * static_cast<std::size_t>(side / 2);
+  if (values.size() != expected)
+    throw Error("colour: found " + std::to_string(values.size()) + " values, expected " + std::to_string(expected));
+  for (const glm::vec3& w : values) {
+    for (int c = 0; c < 3; ++c) {
       if (!(w[c] >= 0 && std::isfinite(w[c])))
         throw Error("colour: found " + std::to_string(w[c]) + ", expected finite values >= 0");
+      largest_ = std::max(largest_, w[c]);
+    }
+  }
+  codes_.reserve(3 * values.size());
+  for (const glm::vec3& w : values)
+    for (int c = 0; c < 3; ++c)
+      codes_.push_back(largest_ > 0 ? encode16(static_cast<double>(w[c]) / static_cast<double>(largest_)) : std::uint16_t{0});
 }
 
-Colour Colour::from_table(const BrdfTable& table, const Stack<float>& stack, int side) {
+Colour Colour::from_table(const BrdfTable& table, const DirectionMap& map, const std::vector<float>& theta_i, int side) {
   constexpr int samples = 8;
-  const std::size_t angles = stack.theta_i().size(), columns = static_cast<std::size_t>(side), rows = columns / 2;
-  std::vector<glm::vec3> values(angles * rows * columns, glm::vec3(0));
-  parallel_for(angles, [&](std::size_t k) {
-    const float theta_i = stack.theta_i()[k];
-    const glm::vec3 wi(std::sin(theta_i), 0, std::cos(theta_i));
+  const std::size_t columns = static_cast<std::size_t>(side), rows = columns / 2;
+  std::vector<glm::vec3> values(theta_i.size() * rows * columns, glm::vec3(0));
+  parallel_for(theta_i.size(), [&](std::size_t k) {
+    const glm::vec3 wi(std::sin(theta_i[k]), 0, std::cos(theta_i[k]));
     for (std::size_t row = 0; row < rows; ++row) {
       for (std::size_t column = 0; column < columns; ++column) {
         glm::vec3 sum(0);
@@ -37,7 +49,7 @@ Colour Colour::from_table(const BrdfTable& table, const Stack<float>& stack, int
           const float y = (static_cast<float>(s / samples) + 0.5f) / samples;
           const float u = (static_cast<float>(column) + x) / static_cast<float>(side);
           const float v = 0.5f + (static_cast<float>(row) + y) / static_cast<float>(side);
-          const auto drawn = stack.sample(theta_i, u, v);
+          const auto drawn = map(theta_i[k], u, v);
           if (!(drawn.pdf > 0)) continue;
           // Both signs of phi: a table need not be as symmetric as its diagrams.
           const glm::vec3 mirror(drawn.wo.x, -drawn.wo.y, drawn.wo.z);
@@ -47,7 +59,13 @@ Colour Colour::from_table(const BrdfTable& table, const Stack<float>& stack, int
       }
     }
   });
-  return Colour(angles, side, std::move(values));
+  return Colour(theta_i, side, values);
+}
+
+std::vector<glm::vec3> Colour::values() const {
+  std::vector<glm::vec3> values(codes_.size() / 3);
+  for (std::size_t i = 0; i < codes_.size(); ++i) values[i / 3][static_cast<int>(i % 3)] = largest_ * decode16(codes_[i]);
+  return values;
 }
 
 glm::vec3 Colour::bilinear(std::size_t angle, SquarePoint<float> at) const noexcept {
@@ -57,17 +75,22 @@ glm::vec3 Colour::bilinear(std::size_t angle, SquarePoint<float> at) const noexc
   const int i = std::min(static_cast<int>(x), side_ - 2), j = std::min(static_cast<int>(y), std::max(side_ / 2 - 2, 0));
   const int below = std::min(j + 1, side_ / 2 - 1);
   const float a = x - static_cast<float>(i), b = y - static_cast<float>(j);
-  const glm::vec3* rows = values_.data() + angle * static_cast<std::size_t>(side_ * (side_ / 2));
-  const glm::vec3 *top = rows + j * side_ + i, *bottom = rows + below * side_ + i;
-  return (1 - b) * ((1 - a) * top[0] + a * top[1]) + b * ((1 - a) * bottom[0] + a * bottom[1]);
+  const std::uint16_t* rows = codes_.data() + 3 * angle * static_cast<std::size_t>(side_ * (side_ / 2));
+  const auto at_cell = [rows](int cell) {
+    const std::uint16_t* c = rows + 3 * cell;
+    return glm::vec3(decode16(c[0]), decode16(c[1]), decode16(c[2]));
+  };
+  const int top = j * side_ + i, bottom = below * side_ + i;
+  return largest_ * ((1 - b) * ((1 - a) * at_cell(top) + a * at_cell(top + 1)) +
+                     b * ((1 - a) * at_cell(bottom) + a * at_cell(bottom + 1)));
 }
 
-glm::vec3 Colour::eval(const std::vector<float>& stack_angles, float theta_i, SquarePoint<float> at) const noexcept {
-  const int count = static_cast<int>(stack_angles.size());
+glm::vec3 Colour::eval(float theta_i, SquarePoint<float> at) const noexcept {
+  const int count = static_cast<int>(theta_i_.size());
   if (count == 1) return bilinear(0, at);
-  const int k = find_cell(stack_angles.data(), count, theta_i);
-  const float alpha = std::clamp((theta_i - stack_angles[k]) / (stack_angles[k + 1] - stack_angles[k]), 0.0f, 1.0f);
-  return (1 - alpha) * bilinear(k, at) + alpha * bilinear(k + 1, at);
+  const int k = find_cell(theta_i_.data(), count, theta_i);
+  const float alpha = std::clamp((theta_i - theta_i_[k]) / (theta_i_[k + 1] - theta_i_[k]), 0.0f, 1.0f);
+  return (1 - alpha) * bilinear(static_cast<std::size_t>(k), at) + alpha * bilinear(static_cast<std::size_t>(k + 1), at);
 }
 
 }  // namespace gonio

@@ -5,42 +5,31 @@
 #include <memory>
 #include <optional>
 
+#include <gonio/brdf/bsdf_sample.h>
 #include <gonio/brdf/build.h>
-#include <gonio/brdf/colour.h>
 
 namespace gonio {
 
-/// A sampled direction of reflection.
-struct BsdfSample {
-  glm::vec3 wo;      ///< unit, wo.z > 0
-  float pdf;         ///< per solid angle [1/sr], > 0
-  glm::vec3 weight;  ///< f_r cos theta_o / pdf per RGB channel: what the path's throughput is multiplied by
-};
-
-/// What a renderer holds of a measured material: importance sampling, its pdf, and f_r.
+/// What a renderer holds of a measured material: importance sampling, its pdf, and f_r, which comes from the
+/// table, exactly. The sampler shares the ownership of the table. (CompactBsdf needs no table.)
 ///
 /// Frame: local, the surface normal is +z; wi and wo are unit vectors that point away from the
 /// surface; wi is the known direction, wo the sampled one. One-sided: for wi.z <= 0 or wo.z <= 0
 /// there is no sample, pdf() and eval() are 0. A two-sided material flips both directions first.
 ///
-/// Either table-backed (f_r comes from the table, exactly; the sampler shares its ownership), or
-/// self-contained (f_r is what the stack's densities and its Colour say; then sample, pdf and eval
-/// agree to rounding and no table is needed).
-///
 /// Thread safety: immutable; every const member may be called concurrently. No member but the
 /// constructors allocates or locks.
 class Sampler {
  public:
-  /// Builds a stack for the table and its options' interpolation. Takes seconds; see StackOptions.
-  explicit Sampler(std::shared_ptr<const BrdfTable> table, const StackOptions& options = {},
-                   const Progress& progress = {});
+  /// With the diagrams that fit_compact() chooses, in 32 bits, blended. Takes seconds.
+  explicit Sampler(std::shared_ptr<const BrdfTable> table, const Progress& progress = {});
 
-  /// Table-backed, with diagrams that exist already (a stack file's, say).
+  /// With a stack of sizes set by hand, and its options' interpolation.
+  Sampler(std::shared_ptr<const BrdfTable> table, const StackOptions& options, const Progress& progress = {});
+
+  /// With diagrams that exist already (a stack file's, say).
   Sampler(std::shared_ptr<const BrdfTable> table, const StackGrid& diagrams,
           Interpolation interpolation = Interpolation::displacement);
-
-  /// Self-contained. @throws Error if `colour` does not have one layer per diagram.
-  Sampler(const StackGrid& diagrams, Colour colour, Interpolation interpolation = Interpolation::displacement);
 
   /// Draws wo for `wi` from two uniform numbers in [0, 1). Empty for wi.z <= 0, and for a draw that
   /// falls on a direction without density (a measure-zero event).
@@ -54,15 +43,13 @@ class Sampler {
   glm::vec3 eval(const glm::vec3& wi, const glm::vec3& wo) const noexcept;
 
   const Stack<float>& stack() const noexcept { return stack_; }
-  const Colour& colour() const noexcept { return colour_; }
-  bool self_contained() const noexcept { return !table_; }
+  const std::shared_ptr<const BrdfTable>& table() const noexcept { return table_; }
   /// All memory held, the shared table apart.
-  std::size_t bytes() const noexcept { return sizeof(*this) - sizeof(stack_) + stack_.bytes() + colour_.bytes(); }
+  std::size_t bytes() const noexcept { return sizeof(*this) - sizeof(stack_) + stack_.bytes(); }
 
  private:
   Stack<float> stack_;
-  std::shared_ptr<const BrdfTable> table_;  // null: self-contained
-  Colour colour_;                           // empty: table-backed
+  std::shared_ptr<const BrdfTable> table_;
 };
 
 }  // namespace gonio

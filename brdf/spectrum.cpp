@@ -65,4 +65,20 @@ std::vector<glm::vec3> rec709_weights(const std::vector<float>& wavelengths) {
   return result;
 }
 
+RgbSpectra rgb_spectra() {
+  // Of all that meet the conditions at these wavelengths, the ones with the least sum of squared
+  // differences between neighbours: a quadratic programme in 45 unknowns, solved once.
+  RgbSpectra spectra;
+  spectra.reflectance = {
+      {0.05796f, 0.00000f, 0.94204f}, {0.05920f, 0.00000f, 0.94080f}, {0.04907f, 0.00000f, 0.95093f},
+      {0.00568f, 0.00000f, 0.99432f}, {0.00000f, 0.20882f, 0.79118f}, {0.00000f, 0.88454f, 0.11546f},
+      {0.00000f, 1.00000f, 0.00000f}, {0.00000f, 1.00000f, 0.00000f}, {0.09673f, 0.84521f, 0.05806f},
+      {0.95613f, 0.04387f, 0.00000f}, {1.00000f, 0.00000f, 0.00000f}, {1.00000f, 0.00000f, 0.00000f},
+      {1.00000f, 0.00000f, 0.00000f}, {1.00000f, 0.00000f, 0.00000f}, {0.99952f, 0.00040f, 0.00008f}};
+  for (std::size_t k = 0; k < spectra.reflectance.size(); ++k) {
+    spectra.wavelengths.push_back(380.0f + 25.0f * static_cast<float>(k));
+  }
+  return spectra;
+}
+
 }  // namespace gonio

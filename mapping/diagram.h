@@ -103,6 +103,8 @@ class Diagram {
  private:
   template <class U>
   friend class Blend;
+  template <class U>
+  friend class Displacement;
 
   const T* phi() const noexcept { return values_.data(); }
   const T* cumulative_phi() const noexcept { return phi() + meridians_; }
@@ -110,6 +112,9 @@ class Diagram {
   const T* density(int i) const noexcept { return r() + parallels_ + i * parallels_; }
   /// U(i, j) of eq. 19: the mass of meridian i up to parallel j.
   const T* cumulative(int i) const noexcept { return density(meridians_ + i); }
+  /// The ends of meridian_at() and parallel_at(), the cell found; `target` is the mass wanted.
+  Meridian meridian_in(int i, T target) const noexcept;
+  Parallel parallel_in(const Meridian& m, int j, T target) const noexcept;
   T meridian_mass(int i) const noexcept { return cumulative(i)[parallels_ - 1]; }
 
   Azimuth azimuth_;
@@ -132,12 +137,15 @@ inline int find_cell(const T* x, int n, T t) noexcept {
 
 template <class T>
 typename Diagram<T>::Meridian Diagram<T>::meridian_at(T u) const noexcept {
-  const T* cumulative_mass = cumulative_phi();
   const T target = std::clamp(u, T(0), T(1)) * mass();
-  const int i = find_cell(cumulative_mass, meridians_, target);
+  return meridian_in(find_cell(cumulative_phi(), meridians_, target), target);
+}
+
+template <class T>
+typename Diagram<T>::Meridian Diagram<T>::meridian_in(int i, T target) const noexcept {
   const T m0 = meridian_mass(i), m1 = meridian_mass(i + 1);
   const T width = phi()[i + 1] - phi()[i];
-  const T a = AzimuthCell<T>{width, m0, m1}.invert(target - cumulative_mass[i]);
+  const T a = AzimuthCell<T>{width, m0, m1}.invert(target - cumulative_phi()[i]);
   return {i, a, phi()[i] + a * width, (1 - a) * m0 + a * m1};
 }
 
@@ -167,11 +175,17 @@ typename Diagram<T>::Parallel Diagram<T>::parallel_at(const Meridian& m, T v) co
     j = b * u0[j + half] + a * u1[j + half] < target ? j + half : j;
     length -= half;
   }
+  return parallel_in(m, j, target);
+}
+
+template <class T>
+typename Diagram<T>::Parallel Diagram<T>::parallel_in(const Meridian& m, int j, T target) const noexcept {
+  const T a = m.a, b = 1 - a;
   const T *d0 = density(m.i), *d1 = density(m.i + 1);
   const RadialCell<T> cell{r()[j], r()[j + 1] - r()[j], b * d0[j] + a * d1[j],
                            b * d0[j + 1] + a * d1[j + 1]};
   const T cell_mass = cell.mass(1);
-  const T inside = target - (b * u0[j] + a * u1[j]);
+  const T inside = target - (b * cumulative(m.i)[j] + a * cumulative(m.i + 1)[j]);
   const T s = inside > 0 && cell_mass > 0 ? cell.invert(std::min(inside / cell_mass, T(1))) : T(0);
   return {cell.r0 + s * cell.h, cell.density(s)};
 }

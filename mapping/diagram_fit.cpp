@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include <gonio/mapping/error.h>
@@ -128,27 +129,24 @@ void add_strip_errors(const Reference& ref, bool radial, std::vector<double>& er
   const Axis& other_weight = radial ? ref.phi_weight : ref.r_weight;
   const std::size_t count = x.size();
   const double scale = 1 / ref.mass();
-  struct Sums {
-    double one = 0, x = 0, xx = 0, g = 0, gx = 0, gg = 0;
-  };
-  std::vector<Sums> sums(count + 1);
+  // Arrays of sums, not an array of structures: the innermost loop runs on vectors.
+  std::vector<double> one(count + 1), sx(count + 1), sxx(count + 1), sg(count + 1), sgx(count + 1), sgg(count + 1), line(count);
   for (std::size_t o = 0; o < other_weight.size(); ++o) {
-    const auto g = [&](std::size_t i) { return radial ? ref.at(o, i) : ref.at(i, o); };
     for (std::size_t k = 0; k < count; ++k) {
-      const double gk = g(k), w = weight[k] * other_weight[o] / (gk + ref.floor), xk = x[k];
-      const Sums& s = sums[k];
-      sums[k + 1] = {s.one + w, s.x + w * xk, s.xx + w * xk * xk, s.g + w * gk, s.gx + w * gk * xk, s.gg + w * gk * gk};
+      const double gk = line[k] = radial ? ref.at(o, k) : ref.at(k, o);
+      const double w = scale * weight[k] * other_weight[o] / (gk + ref.floor), xk = x[k];
+      one[k + 1] = one[k] + w, sx[k + 1] = sx[k] + w * xk, sxx[k + 1] = sxx[k] + w * xk * xk;
+      sg[k + 1] = sg[k] + w * gk, sgx[k + 1] = sgx[k] + w * gk * xk, sgg[k + 1] = sgg[k] + w * gk * gk;
     }
     for (std::size_t a = 0; a + 2 < count; ++a) {
-      const double ga = g(a);
-      const Sums& from = sums[a + 1];
+      const double ga = line[a], xa = x[a];
+      const double one_a = one[a + 1], sx_a = sx[a + 1], sxx_a = sxx[a + 1], sg_a = sg[a + 1], sgx_a = sgx[a + 1], sgg_a = sgg[a + 1];
+      double* to = error.data() + a * count;
       for (std::size_t b = a + 2; b < count; ++b) {
-        const double slope = (g(b) - ga) / (x[b] - x[a]), start = ga - slope * x[a];
-        const Sums& to = sums[b];
-        const double e = (to.gg - from.gg) - 2 * start * (to.g - from.g) - 2 * slope * (to.gx - from.gx) +
-                         start * start * (to.one - from.one) + 2 * start * slope * (to.x - from.x) +
-                         slope * slope * (to.xx - from.xx);
-        error[a * count + b] += std::max(e, 0.0) * scale;
+        const double slope = (line[b] - ga) / (x[b] - xa), start = ga - slope * xa;
+        const double e = (sgg[b] - sgg_a) - 2 * start * (sg[b] - sg_a) - 2 * slope * (sgx[b] - sgx_a) +
+                         start * start * (one[b] - one_a) + 2 * start * slope * (sx[b] - sx_a) + slope * slope * (sxx[b] - sxx_a);
+        to[b] += e > 0 ? e : 0;
       }
     }
   }
@@ -254,57 +252,67 @@ double fit_densities(const Reference& ref, const std::vector<Position>& across,
   constexpr double over_relaxation = 1.7;  // converges for any power in (0, 2)
   const std::size_t m = grid.phi.size(), n = grid.r.size();
   for (double& d : grid.density) d = std::max(d, ref.floor);
-  std::vector<double> ratio(m * n), support(m * n);
+  std::vector<double> ratio(m * n), support(m * n, 0.0), row(n), row_ratio(n);
+  for (std::size_t p = 0; p < ref.phi.size(); ++p) {
+    const auto [i, a] = across[p];
+    for (std::size_t j = 0; j < ref.r.size(); ++j) {
+      const auto [k, s] = along[j];
+      const double weight = ref.phi_weight[p] * ref.r_weight[j];
+      support[i * n + k] += weight * (1 - a) * (1 - s), support[i * n + k + 1] += weight * (1 - a) * s;
+      support[(i + 1) * n + k] += weight * a * (1 - s), support[(i + 1) * n + k + 1] += weight * a * s;
+    }
+  }
   for (int step = 0;; ++step) {
     double mass = 0, model_mass = 0, square = 0;
     std::fill(ratio.begin(), ratio.end(), 0.0);
-    std::fill(support.begin(), support.end(), 0.0);
     for (std::size_t p = 0; p < ref.phi.size(); ++p) {
       const auto [i, a] = across[p];
+      const double *d0 = grid.density.data() + i * n, *d1 = d0 + n;
+      for (std::size_t k = 0; k < n; ++k) row[k] = (1 - a) * d0[k] + a * d1[k];
+      std::fill(row_ratio.begin(), row_ratio.end(), 0.0);
       for (std::size_t j = 0; j < ref.r.size(); ++j) {
         const auto [k, s] = along[j];
-        const std::size_t corner[4] = {i * n + k, i * n + k + 1, (i + 1) * n + k, (i + 1) * n + k + 1};
-        const double basis[4] = {(1 - a) * (1 - s), (1 - a) * s, a * (1 - s), a * s};
-        double model = 0;
-        for (int c = 0; c < 4; ++c) model += basis[c] * grid.density[corner[c]];
+        const double model = (1 - s) * row[k] + s * row[k + 1];
         const double weight = ref.phi_weight[p] * ref.r_weight[j];
         const double g = ref.at(p, j), q = model > 0 ? g / model : 0;
         mass += weight * g;
         model_mass += weight * model;
         square += weight * g * q;
-        for (int c = 0; c < 4; ++c) {
-          ratio[corner[c]] += weight * basis[c] * q;
-          support[corner[c]] += weight * basis[c];
-        }
+        row_ratio[k] += weight * (1 - s) * q;
+        row_ratio[k + 1] += weight * s * q;
       }
+      double *r0 = ratio.data() + i * n, *r1 = r0 + n;
+      for (std::size_t k = 0; k < n; ++k) r0[k] += (1 - a) * row_ratio[k], r1[k] += a * row_ratio[k];
     }
     if (step == steps) return square * model_mass / (mass * mass) - 1;
-    const auto share = [&](std::size_t x, std::size_t y) {
-      const double r = ratio[x] + ratio[y], t = support[x] + support[y];
-      ratio[x] = ratio[y] = r, support[x] = support[y] = t;
-    };
-    if (grid.azimuth == Azimuth::full)  // the seam is one meridian
-      for (std::size_t k = 0; k < n; ++k) share(k, (m - 1) * n + k);
-    double pole_ratio = 0, pole_support = 0;
+    const auto share = [](std::vector<double>& values, std::size_t x, std::size_t y) { values[x] = values[y] = values[x] + values[y]; };
     const std::size_t distinct = grid.azimuth == Azimuth::full ? m - 1 : m;
-    for (std::size_t i = 0; i < distinct; ++i) pole_ratio += ratio[i * n], pole_support += support[i * n];
-    for (std::size_t i = 0; i < m; ++i) ratio[i * n] = pole_ratio, support[i * n] = pole_support;
+    for (std::vector<double>* values : {&ratio, &support}) {
+      if (values == &support && step > 0) break;  // shared already
+      if (grid.azimuth == Azimuth::full)  // the seam is one meridian
+        for (std::size_t k = 0; k < n; ++k) share(*values, k, (m - 1) * n + k);
+      double pole = 0;
+      for (std::size_t i = 0; i < distinct; ++i) pole += (*values)[i * n];
+      for (std::size_t i = 0; i < m; ++i) (*values)[i * n] = pole;
+    }
     for (std::size_t c = 0; c < m * n; ++c)
       if (support[c] > 0) grid.density[c] *= std::pow(ratio[c] / support[c], over_relaxation);
   }
 }
 
-struct Fit {
-  SharedLines lines;
-  std::vector<DiagramGrid> grids;  // of the densities with mass; none if there are none
+/// Steps 1 and 2: the reference grid of some densities, and for every number of lines the best set.
+struct Lines {
+  Azimuth azimuth;
+  std::size_t most_across, most_along;
+  References refs;  // of the densities with mass
+  BestLines across, along;
 };
 
-Fit fit(const std::vector<DiskDensity>& densities, Azimuth azimuth, const FitLimits& limits) {
-  if (limits.meridians < 2 || limits.parallels < 2)
-    throw Error("diagram fit: found a size of " + std::to_string(limits.meridians) + " x " +
-                std::to_string(limits.parallels) + ", expected at least 2 x 2");
-  const std::size_t most_m = static_cast<std::size_t>(limits.meridians);
-  const std::size_t most_n = static_cast<std::size_t>(limits.parallels);
+std::optional<Lines> prepare(const std::vector<DiskDensity>& densities, Azimuth azimuth, int meridians, int parallels) {
+  if (meridians < 2 || parallels < 2)
+    throw Error("diagram fit: found a size of " + std::to_string(meridians) + " x " + std::to_string(parallels) +
+                ", expected at least 2 x 2");
+  const std::size_t most_m = static_cast<std::size_t>(meridians), most_n = static_cast<std::size_t>(parallels);
   const double range = azimuth == Azimuth::half ? pi<double> : 2 * pi<double>;
   References refs = tabulate(densities, uniform(range, 65), uniform(1.0, 129));
   const auto refine = [&](std::size_t columns, std::size_t rows) {
@@ -314,43 +322,61 @@ Fit fit(const std::vector<DiskDensity>& densities, Azimuth azimuth, const FitLim
   };
   refine(65, 129);
   refine(std::max<std::size_t>(97, 3 * most_m + 1), std::max<std::size_t>(129, 4 * most_n + 1));
-  if (refs.empty()) return {};
+  if (refs.empty()) return std::nullopt;
+  BestLines across(strip_errors(refs, false), refs.front().phi.size(), most_m);
+  BestLines along(strip_errors(refs, true), refs.front().r.size(), most_n);
+  return Lines{azimuth, most_m, most_n, std::move(refs), std::move(across), std::move(along)};
+}
 
-  const Axis &phi = refs.front().phi, &r = refs.front().r;
-  const BestLines best_across(strip_errors(refs, false), phi.size(), most_m);
-  const BestLines best_along(strip_errors(refs, true), r.size(), most_n);
+struct Fit {
+  SharedLines lines;
+  std::vector<DiagramGrid> grids;  // one per reference
+};
+
+/// Step 3 on growing sizes, until no density is further off than `tolerance`.
+Fit fit(const Lines& prepared, double tolerance) {
+  const Axis &phi = prepared.refs.front().phi, &r = prepared.refs.front().r;
   // What the strip errors promise and what the fit reaches differ by the material; the first guess
   // is that the fit leaves a sixth.
   double gain = 6;
   for (;;) {
-    const auto [m, n] = choose_size(best_across, most_m, best_along, most_n, gain * limits.tolerance);
-    Fit result{{azimuth, phi, r, best_across.lines(m), best_along.lines(n)}, {}};
+    const auto [m, n] = choose_size(prepared.across, prepared.most_across, prepared.along, prepared.most_along, gain * tolerance);
+    Fit result{{prepared.azimuth, phi, r, prepared.across.lines(m), prepared.along.lines(n)}, {}};
     const SharedLines& lines = result.lines;
     const auto across = positions(phi, lines.across), along = positions(r, lines.along);
     double relvar = 0;  // the largest
-    for (const Reference& ref : refs) {
-      DiagramGrid grid = interpolate(ref, azimuth, lines.across, lines.along);
+    for (const Reference& ref : prepared.refs) {
+      DiagramGrid grid = interpolate(ref, prepared.azimuth, lines.across, lines.along);
       relvar = std::max(relvar, fit_densities(ref, across, along, grid));
       result.grids.push_back(std::move(grid));
     }
-    if (relvar <= limits.tolerance || (m == most_m && n == most_n)) return result;
-    gain *= std::min(0.8, limits.tolerance / relvar);
+    if (relvar <= tolerance || (m == prepared.most_across && n == prepared.most_along)) return result;
+    gain *= std::min(0.8, tolerance / relvar);
   }
 }
 
 }  // namespace
 
 DiagramGrid fit_diagram(const DiskDensity& density, Azimuth azimuth, const FitLimits& limits) {
-  Fit result = fit({density}, azimuth, limits);
-  if (!result.grids.empty()) return std::move(result.grids.front());
+  if (const auto prepared = prepare({density}, azimuth, limits.meridians, limits.parallels))
+    return std::move(fit(*prepared, limits.tolerance).grids.front());
   return {azimuth, {0, azimuth == Azimuth::half ? pi<double> : 2 * pi<double>}, {0, 1}, {0, 0, 0, 0}};
 }
 
-SharedLines fit_lines(const std::vector<DiskDensity>& densities, Azimuth azimuth, const FitLimits& limits) {
-  Fit result = fit(densities, azimuth, limits);
-  if (result.grids.empty()) throw Error("diagram fit: found densities of 0 everywhere, expected some mass");
-  return std::move(result.lines);
+struct LineFit::Prepared {
+  Lines lines;
+};
+
+LineFit::LineFit(const std::vector<DiskDensity>& densities, Azimuth azimuth, int most_meridians, int most_parallels) {
+  auto prepared = prepare(densities, azimuth, most_meridians, most_parallels);
+  if (!prepared) throw Error("diagram fit: found densities of 0 everywhere, expected some mass");
+  prepared_ = std::make_unique<const Prepared>(Prepared{std::move(*prepared)});
 }
+
+LineFit::~LineFit() = default;
+LineFit::LineFit(LineFit&&) noexcept = default;
+
+SharedLines LineFit::lines(double tolerance) const { return fit(prepared_->lines, tolerance).lines; }
 
 DiagramGrid fit_diagram(const DiskDensity& density, const SharedLines& lines) {
   const Reference ref = tabulate(density, lines.phi, lines.r);

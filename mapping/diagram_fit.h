@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include <gonio/mapping/diagram.h>
@@ -45,10 +46,24 @@ struct SharedLines {
   std::vector<std::size_t> across, along;  ///< the lines among them, first and last included
 };
 
-/// The lines that serve all of the densities best: steps 1 and 2 of fit_diagram() on the sum of their
-/// errors, each relative to its own density, the size by the largest relative variance that step 3 leaves.
-/// @throws Error for limits below 2 x 2, or if all densities are 0 everywhere.
-SharedLines fit_lines(const std::vector<DiskDensity>& densities, Azimuth azimuth, const FitLimits& limits = {});
+/// Steps 1 and 2 of fit_diagram() for several densities at once, prepared for any tolerance: the lines that
+/// serve all of them best, by the sum of their errors, each relative to its own density.
+/// Thread safety: immutable; concurrent use is safe.
+class LineFit {
+ public:
+  /// Densities of 0 everywhere are left out. @throws Error for sizes below 2 x 2, or if all are 0.
+  LineFit(const std::vector<DiskDensity>& densities, Azimuth azimuth, int most_meridians, int most_parallels);
+  ~LineFit();
+  LineFit(LineFit&&) noexcept;
+
+  /// The smallest M x N for which step 3 leaves no density a relative variance above `tolerance`; the
+  /// largest there is if none does.
+  SharedLines lines(double tolerance) const;
+
+ private:
+  struct Prepared;
+  std::unique_ptr<const Prepared> prepared_;
+};
 
 /// Step 3 of fit_diagram() on given lines.
 DiagramGrid fit_diagram(const DiskDensity& density, const SharedLines& lines);

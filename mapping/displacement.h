@@ -1,6 +1,6 @@
 #pragma once
 
-#include <optional>
+#include <utility>
 
 #include <gonio/mapping/diagram.h>
 #include <gonio/mapping/monotone_root.h>
@@ -26,58 +26,25 @@ class Displacement {
   /// (u, v) in [0, 1]^2 to the disk.
   PolarSample<T> sample(T u, T v) const noexcept {
     v = std::max(v, smallest_v);
-    const Meridians m{d0_.meridian_at(u), d1_.meridian_at(u)};
-    const auto p0 = d0_.parallel_at(m.first, v), p1 = d1_.parallel_at(m.second, v);
+    const Meridians m = meridians_at(std::clamp(u, T(0), T(1)));
+    const auto [p0, p1] = parallels_at(m, std::min(v, T(1)));
     const T r = w0_ * p0.r + w1_ * p1.r;
     return {{r, w0_ * m.first.phi + w1_ * m.second.phi}, density(m, p0, p1, r)};
   }
 
-  /// The inverse of sample(), by one bracketed root search in u and one in v; the brackets are the
-  /// closed-form inverses of the two diagrams. Empty where the map has no image: at directions that
-  /// lie in the gap which a region of zero density leaves.
-  std::optional<PolarInverse<T>> invert(Polar<T> at) const noexcept {
-    const T u0 = d0_.u_of(d0_.meridian_through(at.phi)), u1 = d1_.u_of(d1_.meridian_through(at.phi));
-    const T u = monotone_root(
-        [&](T x) {
-          const auto a = d0_.meridian_at(x), b = d1_.meridian_at(x);
-          return Slope<T>{w0_ * a.phi + w1_ * b.phi, slope_phi(a, b)};
-        },
-        at.phi, std::min(u0, u1), std::max(u0, u1), pi<T> * std::numeric_limits<T>::epsilon());
-    Meridians m{d0_.meridian_at(u), d1_.meridian_at(u)};
-    const T phi_error = at.phi - (w0_ * m.first.phi + w1_ * m.second.phi);
-    if (in_gap(phi_error, slope_phi(m.first, m.second))) return std::nullopt;
-    if (std::abs(phi_error) > tolerance) {
-      // Beside a meridian without mass u has too few digits for phi: the rest of the way goes without it.
-      const T s0 = 1 / m.first.mass, s1 = 1 / m.second.mass, step = phi_error / (w0_ * s0 + w1_ * s1);
-      if (std::isfinite(s0 * step) && std::isfinite(s1 * step))
-        m = {d0_.meridian_through(m.first.phi + s0 * step), d1_.meridian_through(m.second.phi + s1 * step)};
-    }
-
-    // r rises like sqrt(v) at the pole: search in q = sqrt(v), where it is nearly straight.
-    const T q0 = std::sqrt(d0_.v_of(m.first, at.r)), q1 = std::sqrt(d1_.v_of(m.second, at.r));
-    const T q = monotone_root(
-        [&](T x) {
-          x = std::max(x, std::sqrt(smallest_v));
-          const auto a = d0_.parallel_at(m.first, x * x), b = d1_.parallel_at(m.second, x * x);
-          return Slope<T>{w0_ * a.r + w1_ * b.r, x * slope_r2(m, a, b)};
-        },
-        at.r, std::min(q0, q1), std::max(q0, q1), std::numeric_limits<T>::epsilon());
-    const T v = std::max(q * q, smallest_v);
-    // The map is infinitely steep at the horizon itself: seen from the float before it.
-    const T before = std::min(v, 1 - std::numeric_limits<T>::epsilon() / 2);
-    auto p0 = d0_.parallel_at(m.first, before), p1 = d1_.parallel_at(m.second, before);
-    const T r_error = at.r - (w0_ * p0.r + w1_ * p1.r);
-    if (in_gap(r_error, slope_r2(m, p0, p1) / 2)) return std::nullopt;
-    if (std::abs(r_error) > tolerance) {
-      // The same for v and r, where the density falls to 0: at the horizon of every reflection.
-      const T s0 = m.first.mass / (p0.pdf * p0.r), s1 = m.second.mass / (p1.pdf * p1.r);
-      const T step = r_error / (w0_ * s0 + w1_ * s1);
-      if (std::isfinite(s0 * step) && std::isfinite(s1 * step)) {
-        p0.r = std::clamp(p0.r + s0 * step, T(0), T(1)), p0.pdf = d0_.pdf(m.first, p0.r);
-        p1.r = std::clamp(p1.r + s1 * step, T(0), T(1)), p1.pdf = d1_.pdf(m.second, p1.r);
-      }
-    }
-    return PolarInverse<T>{u, v, density(m, p0, p1, w0_ * p0.r + w1_ * p1.r)};
+  /// The inverse of sample(): exists everywhere; its pdf is 0 in the gap which a region of zero density leaves.
+  ///
+  /// The two positions that are interpolated to `at` have the same mass before them in their diagrams. Mass is a
+  /// polynomial of the position within a cell, cheaper than its inverse: so the positions are what is searched
+  /// for, by one root search in phi and one in r, and u and v are the masses found.
+  PolarInverse<T> invert(Polar<T> at) const noexcept {
+    Across a0{d0_}, a1{d1_};
+    balance(a0, a1, at.phi, d0_.azimuth() == Azimuth::half ? pi<T> : 2 * pi<T>);
+    const Meridians m{a0.at, a1.at};
+    const T r = std::max(at.r, std::numeric_limits<T>::epsilon());  // the density is a quotient of radii
+    Along b0(d0_, m.first), b1(d1_, m.second);
+    balance(b0, b1, r, T(1));
+    return {mass(a0, a1), mass(b0, b1), density(m, b0.at, b1.at, r)};
   }
 
  private:
@@ -87,15 +54,110 @@ class Displacement {
     Meridian first, second;
   };
 
+  /// find_cell() in two arrays at once, given how many cells each has and whether the mass before one is less than its
+  /// target: half as many waits for memory as one search after the other.
+  template <class First, class Second>
+  static std::pair<int, int> find_cells(int length0, const First& before0, int length1, const Second& before1) noexcept {
+    int i = 0, j = 0;
+    while (length0 > 1 || length1 > 1) {  // a search that is at its end stays there
+      const int half0 = length0 / 2, half1 = length1 / 2;
+      i = before0(i + half0) ? i + half0 : i, length0 -= half0;
+      j = before1(j + half1) ? j + half1 : j, length1 -= half1;
+    }
+    return {i, j};
+  }
+  Meridians meridians_at(T u) const noexcept {
+    const T *c0 = d0_.cumulative_phi(), *c1 = d1_.cumulative_phi();
+    const T t0 = u * d0_.mass(), t1 = u * d1_.mass();
+    const auto [i, j] = find_cells(d0_.meridians_ - 1, [&](int k) { return c0[k] < t0; },  //
+                                   d1_.meridians_ - 1, [&](int k) { return c1[k] < t1; });
+    return {d0_.meridian_in(i, t0), d1_.meridian_in(j, t1)};
+  }
+  std::pair<Parallel, Parallel> parallels_at(const Meridians& m, T v) const noexcept {
+    const auto mass = [](const Diagram<T>& d, const Meridian& at) {
+      return [a = at.a, b = 1 - at.a, c0 = d.cumulative(at.i), c1 = d.cumulative(at.i + 1)](int k) {
+        return b * c0[k] + a * c1[k];
+      };
+    };
+    const auto mass0 = mass(d0_, m.first), mass1 = mass(d1_, m.second);
+    const T t0 = v * m.first.mass, t1 = v * m.second.mass;
+    const auto [i, j] = find_cells(d0_.parallels_ - 1, [&](int k) { return mass0(k) < t0; },  //
+                                   d1_.parallels_ - 1, [&](int k) { return mass1(k) < t1; });
+    return {d0_.parallel_in(m.first, i, t0), d1_.parallel_in(m.second, j, t1)};
+  }
+
   // Keeps r positive, where the quotient of radii in the density is 0/0 otherwise.
   static constexpr T smallest_v = std::numeric_limits<T>::epsilon() * std::numeric_limits<T>::epsilon();
-  // A root is as good as phi and r are held.
-  static constexpr T tolerance = 4 * std::numeric_limits<T>::epsilon();
+  /// A position between two meridians, and the share of the diagram's mass before it: `below` before the cell,
+  /// `inside` from there on; `slope` is its derivative.
+  struct Across {
+    const Diagram<T>& d;
+    Meridian at{-1, 0, 0, 0};
+    T below = 0, inside = 0, slope = 0, first = 1, last = -1, m0 = 0, m1 = 0;
 
-  /// Whether a root misses its target by more than the rounding of u or v explains: the map jumps there.
-  static bool in_gap(T error, T slope) noexcept {
-    constexpr T epsilon = std::numeric_limits<T>::epsilon();
-    return std::abs(error) > std::max(4096 * epsilon, 4 * epsilon * slope);
+    void move(T phi) noexcept {
+      if (!(phi >= first && phi <= last)) {
+        at.i = find_cell(d.phi(), d.meridians_, phi);
+        first = d.phi()[at.i], last = d.phi()[at.i + 1];
+        m0 = d.meridian_mass(at.i), m1 = d.meridian_mass(at.i + 1), below = d.cumulative_phi()[at.i] / d.mass();
+      }
+      const T width = last - first;
+      at.a = std::clamp((phi - first) / width, T(0), T(1));
+      at.phi = first + at.a * width;
+      at.mass = (1 - at.a) * m0 + at.a * m1;
+      inside = at.a * width * (m0 + at.mass) / (2 * d.mass());
+      slope = at.mass / d.mass();
+    }
+  };
+
+  /// The same along a meridian.
+  struct Along {
+    const Diagram<T>& d;
+    const Meridian& m;
+    T scale;  // 0 for a meridian without mass
+    Parallel at{0, 0};
+    T below = 0, inside = 0, slope = 0;
+    RadialCell<T> cell{1, -1, 0, 0};
+
+    Along(const Diagram<T>& diagram, const Meridian& meridian) noexcept
+        : d(diagram), m(meridian), scale(meridian.mass > 0 ? 1 / meridian.mass : T(0)) {}
+
+    void move(T r) noexcept {
+      if (!(r >= cell.r0 && r <= cell.r0 + cell.h)) {
+        const int j = find_cell(d.r(), d.parallels_, r);
+        const T *d0 = d.density(m.i) + j, *d1 = d.density(m.i + 1) + j;
+        const T a = m.a, b = 1 - a;
+        cell = {d.r()[j], d.r()[j + 1] - d.r()[j], b * d0[0] + a * d1[0], b * d0[1] + a * d1[1]};
+        below = (b * d.cumulative(m.i)[j] + a * d.cumulative(m.i + 1)[j]) * scale;
+      }
+      const T s = std::clamp((r - cell.r0) / cell.h, T(0), T(1));
+      at = {cell.r0 + s * cell.h, cell.density(s)};
+      inside = cell.mass(s) * scale;
+      slope = 2 * at.r * at.pdf * scale;
+    }
+  };
+
+  /// Moves both to where the mass before them is the same and they are interpolated to `target`, in [0, end].
+  template <class Position>
+  void balance(Position& first, Position& second, T target, T end) const noexcept {
+    // The one with the lesser weight is free; the rounding of the other one is not amplified.
+    const bool swap = w0_ > w1_;
+    Position &free = swap ? second : first, &bound = swap ? first : second;
+    const T lesser = std::min(w0_, w1_), larger = std::max(w0_, w1_), ratio = lesser / larger;
+    const auto difference = [&](T x) {
+      free.move(x), bound.move((target - lesser * x) / larger);
+      return Slope<T>{(free.below - bound.below) + (free.inside - bound.inside), free.slope + ratio * bound.slope};
+    };
+    // std::max and std::min drop the NaN of 0/0.
+    const T lo = std::max(T(0), (target - larger * end) / lesser), hi = std::min(end, target / lesser);
+    difference(monotone_root(difference, std::clamp(target, lo, hi), lo, hi));
+  }
+
+  /// Of two positions balanced, the mass from the diagram that moves more with it.
+  template <class Position>
+  T mass(const Position& first, const Position& second) const noexcept {
+    const Position& p = w0_ * second.slope >= w1_ * first.slope ? first : second;
+    return std::clamp(p.below + p.inside, T(0), T(1));
   }
 
   /// dphi_alpha/du; 0 stands for an infinite slope (a meridian without mass).

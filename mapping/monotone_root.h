@@ -12,30 +12,26 @@ struct Slope {
   T value, derivative;
 };
 
-/// At most this many evaluations in monotone_root(); bisection alone needs one per bit of T.
-inline constexpr int max_root_steps = 80;
+/// At most this many evaluations in monotone_root(): every second one at least halves the bracket or the
+/// step, and both end at the rounding of T.
+inline constexpr int max_root_steps = 2 * 64;
 
-/// The x in [lo, hi] where a non-decreasing function reaches `target`, by Newton steps kept inside
-/// the bracket, with bisection wherever a step leaves it or the bracket fails to halve in two steps.
-/// Stops when the value is within `tolerance` of the target or the bracket is down to rounding. A
-/// function that jumps over the target gives the place of the jump.
+/// The zero in [lo, hi] of a non-decreasing function: Newton steps from `start`, with bisection wherever a step
+/// leaves the bracket or is more than half as long as the one before the last. Ends with a step that is
+/// rounding of x. A function that jumps over 0 gives the place of the jump. @param start in [lo, hi]; lo >= 0.
 template <class T, class Function>
-T monotone_root(const Function& function, T target, T lo, T hi, T tolerance) noexcept {
-  T x = lo + (hi - lo) / 2;
-  T last_width = hi - lo;
+T monotone_root(const Function& function, T start, T lo, T hi) noexcept {
+  constexpr T rounding = 2 * std::numeric_limits<T>::epsilon();
+  T x = start, last = hi - lo, before_last = last;
   for (int step = 0; step < max_root_steps; ++step) {
     const Slope<T> f = function(x);
-    const T error = f.value - target;
-    if (std::abs(error) <= tolerance) return x;
-    (error > 0 ? hi : lo) = x;
-    const T width = hi - lo;
-    if (!(width > std::numeric_limits<T>::epsilon() * hi)) return x;
-    T next = f.derivative > 0 ? x - error / f.derivative : lo;
-    const bool slow = step % 2 == 1 && width > last_width / 2;
-    if (step % 2 == 1) last_width = width;
-    if (slow || !(next > lo && next < hi)) next = lo + width / 2;
-    if (next == x) return x;
+    if (f.value == 0) return x;
+    (f.value > 0 ? hi : lo) = x;
+    T next = x - f.value / std::max(f.derivative, std::numeric_limits<T>::min());  // far away where the slope is 0
+    if (!(next >= lo && next <= hi && std::abs(next - x) <= before_last / 2)) next = lo + (hi - lo) / 2;
+    before_last = last, last = std::abs(next - x);
     x = next;
+    if (!(last > rounding * x)) break;
   }
   return x;
 }

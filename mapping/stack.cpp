@@ -4,30 +4,10 @@
 #include <limits>
 
 #include <gonio/mapping/error.h>
+#include <gonio/mapping/folded_disk.h>
 
 namespace gonio {
 namespace {
-
-/// A point of the disk as the two uniform numbers of a diagram. Half diagrams serve phi < 0 as the
-/// mirror image of phi > 0: the lower half of the disk folds onto the upper.
-template <class T>
-struct Folded {
-  T u;
-  bool mirrored;
-};
-
-template <class T>
-Folded<T> fold(T turn, bool half) noexcept {
-  if (!half) return {turn, false};
-  return turn <= T(0.5) ? Folded<T>{2 * turn, false} : Folded<T>{2 * (1 - turn), true};
-}
-
-template <class T>
-T unfold(T u, bool mirrored, bool half) noexcept {
-  if (!half) return u < 1 ? u : T(0);
-  const T turn = mirrored && u > 0 ? 1 - u / 2 : u / 2;
-  return turn < 1 ? turn : T(0);
-}
 
 template <class T>
 PolarSample<T> sample_one(const Diagram<T>& diagram, T u, T v) noexcept {
@@ -86,13 +66,10 @@ Stack<T>::Stack(const StackGrid& grid, Interpolation interpolation) : interpolat
 
 template <class T>
 typename Stack<T>::Place Stack<T>::place(T theta_i) const noexcept {
-  const int count = static_cast<int>(theta_i_.size());
-  if (count == 1) return {diagrams_[0], diagrams_[0], 0};
-  const int k = find_cell(theta_i_.data(), count, theta_i);
-  const Diagram<T>&first = diagrams_[k], &second = diagrams_[k + 1];
-  const T alpha =
-      std::clamp((theta_i - theta_i_[k]) / (theta_i_[k + 1] - theta_i_[k]), T(0), T(1));
+  const auto [k, alpha] = bracket(theta_i_, theta_i);
+  const Diagram<T>& first = diagrams_[k];
   if (alpha == 0) return {first, first, 0};
+  const Diagram<T>& second = diagrams_[k + 1];
   if (alpha == 1) return {second, second, 0};
   if (interpolation_ == Interpolation::nearest)
     return alpha < T(0.5) ? Place{first, first, 0} : Place{second, second, 0};
@@ -119,46 +96,26 @@ DirectionSample<T> Stack<T>::sample(T theta_i, T u, T v) const noexcept {
   } else {
     s = Displacement<T>(at.first, at.second, at.alpha).sample(folded.u, disk.r2);
   }
-  // The horizon itself has no cosine and is no direction of reflection.
-  s.at.r = std::min(s.at.r, 1 - std::numeric_limits<T>::epsilon() / 2);
-  if (folded.mirrored) s.at.phi = -s.at.phi;
-  if (chart_ == Chart::outgoing) return {polar_to_direction(s.at), s.pdf};
-  const auto d = HalfVectorChart<T>(theta_i).direction(s.at);
-  return {d.wo, s.pdf / d.jacobian};
-}
-
-template <class T>
-typename Stack<T>::OnDisk Stack<T>::to_disk(T theta_i, const Vec3<T>& wo) const noexcept {
-  OnDisk d{{}, false, 1};
-  if (chart_ == Chart::outgoing) {
-    d.at = direction_to_polar(wo);
-  } else {
-    const auto point = HalfVectorChart<T>(theta_i).disk(wo);
-    d.at = point.at, d.jacobian = point.jacobian;
-  }
-  d.mirrored = half() && d.at.phi < 0;
-  if (d.at.phi < 0) d.at.phi = half() ? -d.at.phi : d.at.phi + 2 * pi<T>;
-  return d;
+  return from_disk(chart_, theta_i, s, folded.mirrored);
 }
 
 template <class T>
 T Stack<T>::pdf(T theta_i, const Vec3<T>& wo) const noexcept {
   if (!(wo.z >= 0)) return 0;
-  const OnDisk d = to_disk(theta_i, wo);
+  const OnDisk<T> d = to_disk(chart_, half(), theta_i, wo);
   const Place p = place(theta_i);
   if (p.alpha == 0) return pdf_one(p.first, d.at) / d.jacobian;
   if (interpolation_ == Interpolation::mixture)
     return ((1 - p.alpha) * pdf_one(p.first, d.at) + p.alpha * pdf_one(p.second, d.at)) / d.jacobian;
   if (interpolation_ == Interpolation::blend)
     return Blend<T>(p.first, p.second, p.alpha).pdf(d.at) / d.jacobian;
-  const auto inverse = Displacement<T>(p.first, p.second, p.alpha).invert(d.at);
-  return inverse ? inverse->pdf / d.jacobian : T(0);
+  return Displacement<T>(p.first, p.second, p.alpha).invert(d.at).pdf / d.jacobian;
 }
 
 template <class T>
 std::optional<SquareInverse<T>> Stack<T>::invert(T theta_i, const Vec3<T>& wo) const noexcept {
   if (!(wo.z >= 0)) return std::nullopt;
-  const auto [at, mirrored, jacobian] = to_disk(theta_i, wo);
+  const auto [at, mirrored, jacobian] = to_disk(chart_, half(), theta_i, wo);
   const Place p = place(theta_i);
   PolarInverse<T> inverse;
   if (p.alpha == 0) {
@@ -177,9 +134,7 @@ std::optional<SquareInverse<T>> Stack<T>::invert(T theta_i, const Vec3<T>& wo) c
   } else if (interpolation_ == Interpolation::blend) {
     inverse = Blend<T>(p.first, p.second, p.alpha).invert(at);
   } else {
-    const auto found = Displacement<T>(p.first, p.second, p.alpha).invert(at);
-    if (!found) return std::nullopt;
-    inverse = *found;
+    inverse = Displacement<T>(p.first, p.second, p.alpha).invert(at);
   }
   if (!(inverse.pdf > 0)) return std::nullopt;
   const DiskPoint<T> disk{unfold(inverse.u, mirrored, half()), std::min(inverse.v, T(1))};

@@ -81,7 +81,7 @@ class Stack {
   ///
   /// In float, where the density is at least 1e-6 of its largest value: sample() then invert() comes
   /// back to (u, v) within 1e-4 (not for mixtures); invert() then sample() to `wo` within 5e-4 in each
-  /// component (mixtures: 1e-2; half-vector chart: 1e-3), or as near as the floats u and v let it come where the map is steep.
+  /// component (half-vector chart: 1e-3; mixtures: 1e-2, in the half-vector chart 5e-2 as measured), or as near as the floats u and v let it come where the map is steep.
   /// In the half-vector chart these bounds hold for `blend` up to theta_i = 0.9, the last with 2e-3; beyond, a
   /// float wo holds its half vector to 1 / cos theta_i ulp, and beside the horizon displacement may find no
   /// way back.
@@ -103,15 +103,6 @@ class Stack {
   };
   Place place(T theta_i) const noexcept;
   bool half() const noexcept { return diagrams_.front().azimuth() == Azimuth::half; }
-
-  /// A direction on the disk: at.phi folded into the stored azimuth; densities of the disk over those
-  /// per solid angle.
-  struct OnDisk {
-    Polar<T> at;
-    bool mirrored;
-    T jacobian;
-  };
-  OnDisk to_disk(T theta_i, const Vec3<T>& wo) const noexcept;
 
   Interpolation interpolation_;
   Chart chart_;

@@ -69,7 +69,9 @@ StackFile make_file(int angles = 3, int side = 4) {
   file.diagrams = Stack<float>(grid, Interpolation::displacement).grid();
   std::vector<glm::vec3> values(angles * side * (side / 2));
   for (glm::vec3& w : values) w = {uniform(random), 1e-30f, 100 * uniform(random)};
-  file.colour = Colour(angles, side, std::move(values));
+  std::vector<float> theta_i;
+  for (int k = 0; k < angles; ++k) theta_i.push_back(0.6f * static_cast<float>(k));
+  file.colour = Colour(std::move(theta_i), side, values);
   file.name = "näme";
   file.source = "some file.binary";
   return file;
@@ -124,8 +126,9 @@ std::vector<RawPart> make_parts() {
     parts[k].header.insert("gonio:phi", Imf::FloatVectorAttribute({0, pi<float>}));
     parts[k].header.insert("gonio:r", Imf::FloatVectorAttribute({0, 0.5f, 1}));
   }
+  parts[2].header.insert("gonio:theta_i", Imf::FloatVectorAttribute({0.0f, 1.0f}));
   Imf::Header& first = parts.front().header;
-  first.insert("gonio:format", Imf::IntAttribute(1));
+  first.insert("gonio:format", Imf::IntAttribute(2));
   first.insert("gonio:name", Imf::StringAttribute("raw"));
   first.insert("gonio:source", Imf::StringAttribute(""));
   first.insert("gonio:chart", Imf::StringAttribute("outgoing"));
@@ -177,14 +180,14 @@ TEST_F(StackFileTest, RoundTripWithoutColour) {
   const StackFile loaded = load_stack(path("a.exr"));
   expect_same(saved.diagrams, loaded.diagrams);
   EXPECT_TRUE(loaded.colour.empty());
-  EXPECT_THROW(load_sampler(path("a.exr")), Error);
+  EXPECT_THROW(load_compact(path("a.exr")), Error);
 }
 
-TEST_F(StackFileTest, LoadedSamplerIsTheSavedOne) {
+TEST_F(StackFileTest, LoadedBsdfIsTheSavedOne) {
   const StackFile file = make_file();
   save_stack(path("a.exr"), file);
-  const Sampler saved(file.diagrams, file.colour), loaded = load_sampler(path("a.exr"));
-  EXPECT_TRUE(loaded.self_contained());
+  const CompactBsdf saved(file.diagrams, file.interpolation, file.storage, file.colour), loaded = load_compact(path("a.exr"));
+  EXPECT_EQ(loaded.storage(), Storage::float32);
   const glm::vec3 wi(0.6f, 0, 0.8f);
   for (int k = 0; k < 64; ++k) {
     const glm::vec2 u((static_cast<float>(k % 8) + 0.5f) / 8,
@@ -230,7 +233,7 @@ TEST_F(StackFileTest, AnyByteDamaged) {
         const StackFile file = load_stack(path("b.exr"));
         // Damage that is not seen must still leave something that can be sampled.
         if (!file.colour.empty()) {
-          EXPECT_NO_THROW(Sampler(file.diagrams, file.colour)) << at;
+          EXPECT_NO_THROW(CompactBsdf(file.diagrams, file.interpolation, file.storage, file.colour)) << at;
         }
       } catch (const Error& error) {
         ++refused;
@@ -300,8 +303,16 @@ constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 using Parts = std::vector<RawPart>;
 const Fault faults[] = {
-    {"Version", [](Parts& p) { p[0].header.insert("gonio:format", Imf::IntAttribute(2)); },
-     "attribute gonio:format: found 2, expected 1"},
+    {"Version", [](Parts& p) { p[0].header.insert("gonio:format", Imf::IntAttribute(1)); },
+     "attribute gonio:format: found 1, expected 2"},
+    {"Storage", [](Parts& p) { p[0].header.insert("gonio:storage", Imf::StringAttribute("clay")); },
+     "attribute gonio:storage: found clay, expected one of packed16, float32"},
+    {"PackedDisplacement", [](Parts& p) { p[0].header.insert("gonio:storage", Imf::StringAttribute("packed16")); },
+     "attribute gonio:interpolation: found displacement, expected blend with gonio:storage packed16"},
+    {"ColourWithoutAngles", [](Parts& p) { p[2].header = without(p[2].header, "gonio:theta_i"); },
+     "part colour: attribute gonio:theta_i"},
+    {"ColourAnglesNotAscending",
+     [](Parts& p) { p[2].header.insert("gonio:theta_i", Imf::FloatVectorAttribute({0.6f, 0.0f})); }, "colour: theta_i[1]"},
     {"Chart", [](Parts& p) { p[0].header.insert("gonio:chart", Imf::StringAttribute("sideways")); },
      "attribute gonio:chart: found sideways, expected one of outgoing, half"},
     {"NoName", [](Parts& p) { p[0].header = without(p[0].header, "gonio:name"); },
@@ -347,7 +358,7 @@ const Fault faults[] = {
     {"ColourFirst", [](Parts& p) { std::swap(p[0].pixels, p[2].pixels), std::swap(p[0], p[2]); },
      "attribute gonio:format"},
     {"ColourBetween", [](Parts& p) { std::swap(p[1], p[2]); },
-     "part colour: size: found 4 x 4, expected 4 x 2"},
+     "a part after colour"},
     {"NoDiagram", [](Parts& p) { p.resize(1), p[0].header.setName("colour"); }, "part colour"},
 };
 

@@ -1,10 +1,12 @@
-#include <gonio/brdf/choose_stack.h>
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/brdf/sniff.h>
 #include <gonio/brdf/write.h>
 #include <gonio/fitting/synth.h>
 #include <gonio/mapping/error.h>
 #include <gonio/tools/convert.h>
+#include <gonio/tools/convert_rgl.h>
+#include <gonio/tools/convert_scene.h>
+#include <gonio/tools/convert_stack.h>
 #include <gonio/tools/input.h>
 #include <gonio/tools/options.h>
 #include <gonio/tools/progress.h>
@@ -18,14 +20,13 @@
 namespace gonio {
 namespace {
 
-constexpr int colour_side = 16;
-
 struct Options {
   std::string in, out, grid;
+  std::string scene, scene_out;
   int n_phi_d = 360;
-  StackOptions stack;
-  ChartChoice chart;
+  StackRequest stack;
   CellPolicies policies;
+  bool rgb = false;
 };
 
 /// Options that would have no effect are refused.
@@ -41,47 +42,14 @@ void refuse_policies(const CLI::App& verb, const std::string& why) {
   refuse(verb, {"--negative", "--nonfinite", "--missing"}, why);
 }
 
-/// What was built, the best first.
-std::string describe(const std::vector<RatedStack>& rated) {
-  std::string text;
-  for (const RatedStack& r : rated) {
-    char number[32];
-    std::snprintf(number, sizeof(number), "%.2g", r.relvar);
-    text += (text.empty() ? "chart " : "; not ") + std::string(to_string(r.grid.chart)) + ", " +
-            to_string(r.interpolation) + ": mean relvar " + number;
-  }
-  return text + " (2 to 80 degrees)";
-}
-
-void table_to_stack(const Options& options) {
-  StackFile file;
-  std::string built;
-  {
-    ProgressLine progress("building the stack of " + options.in);
-    const BrdfTable table = load_input(options.in, options.policies);
-    const std::vector<RatedStack> rated =
-        choose_stack(table, options.chart.candidates(options.stack),
-                     [&](double share) { progress.update(share); });
-    built = describe(rated);
-    const Stack<float> stack(rated.front().grid, rated.front().interpolation);
-    file.diagrams = stack.grid();
-    file.interpolation = stack.interpolation();
-    file.colour = Colour::from_table(table, stack, colour_side);
-    file.name = table.info().name;
-    file.source = std::filesystem::path(options.in).filename().string();
-  }
-  save_stack(options.out, file);
-  std::printf("%s\n", built.c_str());
-}
-
-void convert_stack(const CLI::App& verb, const Options& options, const std::string& extension) {
+void stack_to_stack(const CLI::App& verb, const Options& options, const std::string& extension) {
   if (extension != ".exr") {
     throw Error(options.in +
                 ": format: found a stack file, expected a table (MERL, RGL or MBSDF) to write " +
                 extension);
   }
-  refuse(verb, {"--chart", "--interpolation", "--incident", "--grid", "--bytes", "--tolerance", "--phi-d"},
-         "a stack file keeps its diagrams");
+  refuse(verb, stack_options, "a stack file keeps its diagrams");
+  refuse(verb, {"--grid", "--phi-d"}, "a stack file keeps its diagrams");
   refuse_policies(verb, "a stack file has no such cells");
   save_stack(options.out, load_stack(options.in));
 }
@@ -127,22 +95,53 @@ void model_to_table(const CLI::App& verb, const Options& options, const std::str
   write_mbsdf(options.out, synthesize_grid(model, thetas, phis));
 }
 
+void any_to_rgl(const CLI::App& verb, const Options& options) {
+  refuse(verb, stack_options, "the size of a .bsdf follows from the material");
+  refuse(verb, {"--grid", "--phi-d"}, "the size of a .bsdf follows from the material");
+  if (is_exr(options.in) || is_model_file(options.in) || sniff_format(options.in) == TableFormat::rgl) {
+    refuse_policies(verb, "only the cells of MERL and MBSDF are sampled anew");
+  }
+  convert_to_rgl(options.in, options.out, options.policies, options.rgb);
+}
+
+void scene_to_stacks(const CLI::App& verb, const Options& options) {
+  for (const char* needed : {"--budget", "--output"})
+    if (verb.count(needed) == 0) throw CLI::RequiredError(needed);
+  for (const CLI::Option* option : verb.get_options()) {
+    const std::string name = option->get_name();
+    if (name != "--scene" && name != "--budget" && name != "--output") refuse(verb, {name.c_str()}, "--scene has its own");
+  }
+  convert_scene(options.scene, *options.stack.budget, options.scene_out);
+}
+
 void convert(const CLI::App& verb, Options& options) {
-  const std::string extension = checked_extension(options.out, {".exr", ".binary", ".mbsdf"});
+  if (verb.count("--scene") > 0) {
+    scene_to_stacks(verb, options);
+    return;
+  }
+  refuse(verb, {"--output"}, "only a scene has it");
+  if (options.out.empty()) throw CLI::RequiredError(options.in.empty() ? "IN" : "OUT");
+  const bool any_kind = std::filesystem::path(options.out).extension().empty() && options.stack.max_variance;
+  const std::string extension =
+      any_kind ? "" : checked_extension(options.out, {".exr", ".binary", ".mbsdf", ".bsdf"});
+  if (extension == ".bsdf") {
+    any_to_rgl(verb, options);
+    return;
+  }
+  refuse(verb, {"--rgb"}, "only .bsdf may hold spectra");
   if (extension != ".binary") refuse(verb, {"--phi-d"}, "only MERL has it");
   if (is_exr(options.in)) {
-    convert_stack(verb, options, extension);
+    stack_to_stack(verb, options, extension);
     return;
   }
-  if (extension == ".exr") {
+  if (extension == ".exr" || any_kind) {
     if (!options.grid.empty()) {
-      std::tie(options.stack.meridians, options.stack.parallels) =
-          parse_grid("--grid", options.grid);
+      std::tie(options.stack.by_hand.meridians, options.stack.by_hand.parallels) = parse_grid("--grid", options.grid);
     }
-    table_to_stack(options);
+    table_to_stack(verb, options.in, options.out, options.stack, options.policies);
     return;
   }
-  refuse(verb, {"--chart", "--interpolation", "--incident", "--bytes", "--tolerance"}, "only a stack file has diagrams");
+  refuse(verb, stack_options, "only a stack file has diagrams");
   if (extension == ".binary") {
     refuse(verb, {"--grid"}, "the cells of MERL are fixed");
   }
@@ -159,40 +158,48 @@ void convert(const CLI::App& verb, Options& options) {
 
 void add_convert(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  StackOptions& stack = options->stack;
+  const StackOptions& stack = options->stack.by_hand;
   CLI::App* verb = app.add_subcommand(
-      "convert", "A table as a stack file (.exr), MERL (.binary) or MBSDF (.mbsdf)");
+      "convert", "A table as a stack file (.exr), MERL (.binary), MBSDF (.mbsdf) or RGL (.bsdf)");
   verb->add_option("IN", options->in,
-                   "MERL, RGL or MBSDF table, stack file, or fit.json, known by its content")
-      ->required();
+                   "MERL, RGL or MBSDF table, stack file, or fit.json, known by its content");
   verb->add_option("OUT", options->out,
-                   "File to write; its extension, .exr, .binary or .mbsdf, is its format")
-      ->required();
+                   "File to write; its extension, .exr, .binary, .mbsdf or .bsdf, is its format. With none and "
+                   "--max-variance: .json if fitted lobes will do in less memory, else .exr");
   verb->add_option("--grid", options->grid,
                    ".exr: at most M meridians and N parallels in a diagram [" +
                        std::to_string(stack.meridians) + "x" + std::to_string(stack.parallels) +
                        "]; .mbsdf: M thetas and N phis [90x180]")
       ->type_name("MxN");
-  add_chart_options(*verb, options->chart);
-  add_stack_options(*verb, stack);
+  const char* const scene = "Stacks of all materials of a scene, in place of IN and OUT";
+  verb->add_option("--scene", options->scene, "Scene manifest (JSON): materials, their files and shares")->group(scene);
+  verb->add_option("-o,--output", options->scene_out, "Folder for the stack files and scene-budget.json")->group(scene);
+  add_stack_request(*verb, options->stack);
   verb->add_option("--phi-d", options->n_phi_d,
                    ".binary: bins of phi_d, 360 or 180; most other programs read 180 alone, which "
                    "averages f_r(wi, wo) and f_r(wo, wi)")
       ->check(CLI::IsMember({180, 360}))
       ->type_name("BINS")
       ->capture_default_str();
+  verb->add_flag("--rgb", options->rgb,
+                 ".bsdf: no spectra, as the RGB variants of Mitsuba 3 need it; pbrt-v4 and its "
+                 "spectral variants need them");
   add_cell_policies(*verb, options->policies);
   verb->footer(
-      "MERL to MERL, and MBSDF to MBSDF without --grid, keep the values as they are stored.\n"
+      "MERL to MERL, RGL to RGL, and MBSDF to MBSDF without --grid, keep the values as they are stored.\n"
       "Anything else is sampled at the cell centres of OUT. A fit.json is a table of MERL's cells\n"
       "for a stack, and the model itself at the cell centres of a table.\n\n"
       "Examples:\n"
       "  gonio convert chrome.binary chrome.exr\n"
-      "  gonio convert satin.bsdf small.exr --grid 16x16 --bytes 64KiB\n"
-      "  gonio convert satin.bsdf satin.exr --chart half\n"
+      "  gonio convert satin.bsdf small.exr --max-variance 0.01\n"
+      "  gonio convert satin.bsdf near.exr --budget 128KiB\n"
+      "  gonio convert paper.bsdf paper --max-variance 0.01 --front front.json\n"
+      "  gonio convert satin.bsdf satin.exr --interpolation displacement --grid 16x16\n"
       "  gonio convert satin.bsdf satin.binary\n"
       "  gonio convert satin.bsdf satin.mbsdf --grid 45x90\n"
-      "  gonio convert fit.json fit.exr");
+      "  gonio convert chrome.binary chrome.bsdf\n"
+      "  gonio convert fit.json fit.exr\n"
+      "  gonio convert --scene scene.json --budget 8MiB -o stacks");
   verb->callback([options, verb] { convert(*verb, *options); });
 }
 

@@ -4,7 +4,7 @@
 
 namespace gonio {
 
-/// `gonio convert IN OUT`: a table as a stack file, MERL or MBSDF; a stack file rewritten.
+/// `gonio convert IN OUT`: a table as a stack file, MERL, MBSDF or RGL; a stack file rewritten or as RGL.
 void add_convert(CLI::App& app);
 
 }  // namespace gonio

@@ -128,7 +128,6 @@ std::string range(const std::vector<DiagramGrid>& diagrams, const Size& size) {
 void print_stack(const std::string& path) {
   const StackFile file = load_stack(path);
   const std::vector<DiagramGrid>& diagrams = file.diagrams.diagrams;
-  const Stack<float> stack(file.diagrams, file.interpolation);
   print("name", file.name);
   print("format", "stack of diagrams, version " + std::to_string(stack_file_version));
   print("source", file.source);
@@ -141,15 +140,17 @@ void print_stack(const std::string& path) {
   print("theta_i",
         degrees(file.diagrams.theta_i.front()) + " to " + degrees(file.diagrams.theta_i.back()));
   print("file", bytes_text(regular_file_size(path)));
-  print("diagrams", bytes_text(stack.bytes()) + " in memory");
+  const bool packed = file.storage == Storage::packed16;
+  print("diagrams", bytes_text(packed ? PackedStack(file.diagrams).bytes() : Stack<float>(file.diagrams, file.interpolation).bytes()) +
+                        " in memory, " + (packed ? "16" : "32") + " bits a crossing");
   if (file.colour.empty()) {
     print("colour", "none: sampling needs the table as well");
     return;
   }
   print("colour", std::to_string(file.colour.side()) + " x " +
-                      std::to_string(file.colour.side() / 2) + " cells per diagram, " +
+                      std::to_string(file.colour.side() / 2) + " cells at " + std::to_string(file.colour.theta_i().size()) + " angles, " +
                       bytes_text(file.colour.bytes()) + " in memory");
-  const Sampler sampler(file.diagrams, file.colour, file.interpolation);
+  const CompactBsdf sampler(file.diagrams, file.interpolation, file.storage, file.colour);
   print_albedo([&](float theta_i) {
     constexpr int side = 128;
     const glm::vec3 wi(std::sin(theta_i), 0, std::cos(theta_i));

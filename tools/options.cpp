@@ -9,6 +9,12 @@
 
 namespace gonio {
 
+namespace {
+
+const char* const by_hand = "Size of a stack by hand: it grows until one of these is met";
+
+}  // namespace
+
 const char* to_string(CellPolicy policy) noexcept {
   switch (policy) {
     case CellPolicy::zero:
@@ -40,56 +46,62 @@ void add_cell_policies(CLI::App& verb, CellPolicies& policies) {
   add("--missing", policies.missing, "Cells marked as not measured (MERL: negative)");
 }
 
-std::vector<StackOptions> ChartChoice::candidates(const StackOptions& size) const {
-  std::vector<StackOptions> result;
-  for (const Chart chart : charts) {
-    StackOptions options = size;
-    options.chart = chart;
-    options.interpolation = interpolation.value_or(
-        chart == Chart::half ? Interpolation::blend : Interpolation::displacement);
-    result.push_back(options);
-  }
-  return result;
-}
-
-void add_chart_options(CLI::App& verb, ChartChoice& choice) {
+void add_stack_request(CLI::App& verb, StackRequest& request) {
+  const char* const size = "Size of a stack: a result, not a parameter";
+  verb.add_option_function<double>(
+          "--max-variance", [&request](double value) { request.max_variance = value; },
+          "The fewest bytes with at most this relative variance at every angle up to 80 degrees [0.003 if there is "
+          "no --budget]")
+      ->type_name("X")
+      ->group(size);
+  verb.add_option_function<std::string>(
+          "--budget", [&request](const std::string& text) { request.budget = parse_bytes("--budget", text); },
+          "At most this much memory [256KiB]; without --max-variance, the least evaluation error within it. With --scene, "
+          "of all stacks together")
+      ->type_name("SIZE")
+      ->group(size);
   verb.add_option_function<std::string>(
           "--chart",
-          [&choice](const std::string& text) {
+          [&request](const std::string& text) {
             if (text == "auto") return;
             for (const Chart chart : charts) {
-              if (text == to_string(chart)) choice.charts = {chart};
+              if (text == to_string(chart)) request.charts = {chart};
             }
           },
           "What diagrams tabulate: outgoing directions, half vectors, or what measures better")
       ->check(CLI::IsMember({"outgoing", "half", "auto"}))
       ->type_name("outgoing|half|auto")
-      ->default_str("auto");
+      ->default_str("auto")
+      ->group(size);
+  verb.add_option("--front", request.front,
+                  "Also write all forms that were measured as JSON: bytes, ns, relvar, eval_error, and which is chosen")
+      ->type_name("FILE")
+      ->group(size);
   verb.add_option_function<std::string>(
           "--interpolation",
-          [&choice](const std::string& text) {
-            choice.interpolation =
-                text == "blend" ? Interpolation::blend : Interpolation::displacement;
+          [&request](const std::string& text) {
+            request.interpolation = text == "blend" ? Interpolation::blend : Interpolation::displacement;
           },
-          "Between incident angles [displacement for outgoing, blend for half]")
+          "Sizes by hand, 32-bit densities, and this between incident angles [displacement]")
       ->check(CLI::IsMember({"displacement", "blend"}))
-      ->type_name("displacement|blend");
+      ->type_name("displacement|blend")
+      ->group(by_hand);
+  add_stack_options(verb, request.by_hand);
 }
 
 void add_stack_options(CLI::App& verb, StackOptions& stack) {
-  const char* const group = "Size of a stack: it grows until one of these is met";
   verb.add_option("--incident", stack.incident, "At most this many incident angles")
       ->capture_default_str()
-      ->group(group);
+      ->group(by_hand);
   verb.add_option_function<std::string>(
           "--bytes", [&stack](const std::string& text) { stack.bytes = parse_bytes("--bytes", text); },
           "At most this much memory for the diagrams (once there are seven), such as 1MiB")
       ->type_name("SIZE")
       ->default_str(std::to_string(stack.bytes / 1024) + "KiB")
-      ->group(group);
+      ->group(by_hand);
   verb.add_option("--tolerance", stack.tolerance, "Relative variance that is good enough")
       ->capture_default_str()
-      ->group(group);
+      ->group(by_hand);
 }
 
 std::pair<int, int> parse_grid(const std::string& option, const std::string& text) {

@@ -5,6 +5,7 @@
 #include <CLI/App.hpp>
 #include <cstddef>
 #include <filesystem>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <utility>
@@ -19,17 +20,24 @@ void add_cell_policies(CLI::App& verb, CellPolicies& policies);
 /// "zero", "fill" or "reject".
 const char* to_string(CellPolicy policy) noexcept;
 
-/// The charts that --chart asks for: one, or both for `auto`.
-/// `choice` must outlive the parsing.
-struct ChartChoice {
-  std::vector<Chart> charts{Chart::outgoing, Chart::half};
-  std::optional<Interpolation> interpolation;  ///< of --interpolation
-
-  /// What is to be built: in each chart with the interpolation asked for, or the one that suits the
-  /// chart, displacement for outgoing and blend for half.
-  std::vector<StackOptions> candidates(const StackOptions& size) const;
+/// How a table becomes a stack file: as small as a variance allows, as good as a number of bytes allows, or of
+/// sizes given by hand.
+struct StackRequest {
+  std::vector<Chart> charts{Chart::half, Chart::outgoing};  ///< of --chart: one, or both for `auto`
+  std::optional<double> max_variance;                       ///< of --max-variance
+  std::optional<std::size_t> budget;                        ///< of --budget
+  std::string front;                                        ///< of --front
+  std::optional<Interpolation> interpolation;               ///< of --interpolation, by hand
+  StackOptions by_hand;
 };
-void add_chart_options(CLI::App& verb, ChartChoice& choice);
+
+/// The options of a StackRequest; `request` must outlive the parsing. --grid, which means something else for other
+/// formats, is not among them.
+void add_stack_request(CLI::App& verb, StackRequest& request);
+
+/// Their names.
+inline constexpr std::initializer_list<const char*> stack_options = {
+    "--chart", "--max-variance", "--budget", "--front", "--interpolation", "--incident", "--bytes", "--tolerance"};
 
 /// The options --incident, --bytes and --tolerance of a verb that builds stacks.
 /// `stack` must outlive the parsing.

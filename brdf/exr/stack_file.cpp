@@ -128,21 +128,26 @@ StackFile load(const std::string& file) {
   result.source = attribute<Imf::StringAttribute, std::string>(file, first, "gonio:source");
   result.diagrams.chart = choice(file, first, "gonio:chart", charts, Chart::outgoing);
   result.interpolation = choice(file, first, "gonio:interpolation", interpolations, Interpolation::displacement);
+  result.storage = choice(file, first, "gonio:storage", storages, Storage::float32);
+  if (result.storage == Storage::packed16 && result.interpolation != Interpolation::blend)
+    fail(file, "attribute gonio:interpolation", to_string(result.interpolation), "blend with gonio:storage packed16");
 
   for (int k = 0; k < input.parts(); ++k) {
     const Imf::Header& header = input.header(k);
     if (!input.partComplete(k)) fail(file, "part " + header.name(), "an incomplete part", "all its rows");
     if (!result.colour.empty()) fail(file, "part " + header.name(), "a part after colour", "colour to be the last");
     if (header.name() == "colour") {
-      const int angles = static_cast<int>(result.diagrams.theta_i.size());
+      if (result.diagrams.theta_i.empty()) fail(file, "part colour", "no diagrams before it", "it to be the last part");
+      auto theta_i = attribute<Imf::FloatVectorAttribute, std::vector<float>>(file, header, "gonio:theta_i");
       const int side = header.dataWindow().max.x < largest_side ? header.dataWindow().max.x + 1 : 0;
-      if (side < 2 || angles == 0 || angles > largest_side)
-        fail(file, "part colour", "no cells, or no diagrams before it", "the last part, some cells wide");
-      const auto pixels = read_pixels(file, input, k, side, angles * (side / 2), {"R", "G", "B"});
+      if (side < 2 || theta_i.empty() || theta_i.size() > largest_side)
+        fail(file, "part colour", "no cells or no gonio:theta_i", "some");
+      const auto pixels =
+          read_pixels(file, input, k, side, static_cast<int>(theta_i.size()) * (side / 2), {"R", "G", "B"});
       std::vector<glm::vec3> values(pixels.size() / 3);
       for (std::size_t i = 0; i < values.size(); ++i)
         values[i] = {pixels[3 * i], pixels[3 * i + 1], pixels[3 * i + 2]};
-      result.colour = Colour(result.diagrams.theta_i.size(), side, std::move(values));
+      result.colour = Colour(std::move(theta_i), side, values);
       continue;
     }
     const std::string field = "part " + header.name() + ": ";
@@ -179,7 +184,8 @@ void save_stack(const std::filesystem::path& path, const StackFile& file) {
   if (parts.empty()) fail(path.string(), "diagrams", "none", "at least one");
   if (!file.colour.empty()) {
     const int side = file.colour.side();
-    Part part = make_part("colour", side, static_cast<int>(parts.size()) * (side / 2), {"R", "G", "B"});
+    Part part = make_part("colour", side, static_cast<int>(file.colour.theta_i().size()) * (side / 2), {"R", "G", "B"});
+    part.header.insert("gonio:theta_i", Imf::FloatVectorAttribute(file.colour.theta_i()));
     part.header.insert("gonio:units", Imf::StringAttribute("W = f_r cos(theta_o) / pdf, linear Rec. 709"));
     for (const glm::vec3& w : file.colour.values()) part.pixels.insert(part.pixels.end(), {w.r, w.g, w.b});
     parts.push_back(std::move(part));
@@ -191,6 +197,7 @@ void save_stack(const std::filesystem::path& path, const StackFile& file) {
   first.insert("gonio:source", Imf::StringAttribute(file.source));
   first.insert("gonio:chart", Imf::StringAttribute(to_string(file.diagrams.chart)));
   first.insert("gonio:interpolation", Imf::StringAttribute(to_string(file.interpolation)));
+  first.insert("gonio:storage", Imf::StringAttribute(to_string(file.storage)));
   first.insert("gonio:units", Imf::StringAttribute("pdf per 2 r dr dphi in 1/sr; angles in radians"));
   first.insert("gonio:layout", Imf::StringAttribute("one part per incident angle: columns r, rows phi in 0..pi, mirrored"));
 
@@ -223,7 +230,10 @@ StackFile load_stack(const std::filesystem::path& path) {
   try {
     StackFile file = load(path.string());
     // What cannot be sampled is refused here, with the name of the file.
-    const Stack<float> usable(file.diagrams, file.interpolation);
+    if (file.storage == Storage::packed16)
+      const PackedStack usable(file.diagrams);
+    else
+      const Stack<float> usable(file.diagrams, file.interpolation);
     return file;
   } catch (const Error& e) {
     const std::string what = e.what();
@@ -242,10 +252,10 @@ bool is_exr(const std::filesystem::path& path) {
   return stream.gcount() == sizeof(magic) && Imf::isImfMagic(magic);
 }
 
-Sampler load_sampler(const std::filesystem::path& path) {
+CompactBsdf load_compact(const std::filesystem::path& path) {
   StackFile file = load_stack(path);
   if (file.colour.empty()) fail(path.string(), "part colour", "none", "one (a self-contained stack)");
-  return Sampler(file.diagrams, std::move(file.colour), file.interpolation);
+  return CompactBsdf(file.diagrams, file.interpolation, file.storage, std::move(file.colour));
 }
 
 }  // namespace gonio

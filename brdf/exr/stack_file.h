@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include <gonio/brdf/sampler.h>
+#include <gonio/brdf/compact_bsdf.h>
 
 namespace gonio {
 
@@ -16,13 +16,14 @@ struct StackFile {
   std::string source;   ///< file the stack was made of, without its folder; empty if unknown
   /// What the diagrams were built for; nearest and mixture can always be used instead.
   Interpolation interpolation = Interpolation::displacement;
+  Storage storage = Storage::float32;  ///< what the densities are to be held in
 };
 
 /// Version of the layout that save_stack() writes; load_stack() reads this one only.
-inline constexpr int stack_file_version = 1;
+inline constexpr int stack_file_version = 2;
 
 /// Writes `file`, replacing the target as a whole or leaving it as it was. Values are stored as 32-bit
-/// floats: what comes from a Stack<float> or was loaded from a stack file survives bit by bit.
+/// floats: what comes from a Stack<float>, a PackedStack or was loaded from a stack file survives bit by bit.
 /// @throws Error if the path cannot be written.
 void save_stack(const std::filesystem::path& path, const StackFile& file);
 
@@ -33,8 +34,7 @@ StackFile load_stack(const std::filesystem::path& path);
 /// True if the file begins like an OpenEXR file. @throws Error if it cannot be read.
 bool is_exr(const std::filesystem::path& path);
 
-/// What a renderer calls: a self-contained sampler from a stack file.
-/// @throws Error as load_stack(), and for a file without colour.
-Sampler load_sampler(const std::filesystem::path& path);
+/// What a renderer calls. @throws Error as load_stack(), and for a file without colour.
+CompactBsdf load_compact(const std::filesystem::path& path);
 
 }  // namespace gonio

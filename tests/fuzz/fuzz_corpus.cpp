@@ -51,8 +51,13 @@ int main(int argc, char** argv) {
   stack.diagrams = gonio::Stack<float>(small_stack(), gonio::Interpolation::displacement).grid();
   fs::create_directories(folder / "stack");
   gonio::save_stack(folder / "stack" / "bare.exr", stack);
-  stack.colour = gonio::Colour(3, 4, std::vector<glm::vec3>(24, glm::vec3(0.5f)));
+  stack.colour = gonio::Colour({0, 0.5f, 1}, 4, std::vector<glm::vec3>(24, glm::vec3(0.5f)));
   gonio::save_stack(folder / "stack" / "colour.exr", stack);
+  for (auto& diagram : stack.diagrams.diagrams) diagram = stack.diagrams.diagrams.front();
+  stack.interpolation = gonio::Interpolation::blend;
+  stack.storage = gonio::Storage::packed16;
+  stack.diagrams = gonio::PackedStack(stack.diagrams).grid();
+  gonio::save_stack(folder / "stack" / "packed.exr", stack);
 
   fs::create_directories(folder / "image");
   gonio::DiskImage image(4);

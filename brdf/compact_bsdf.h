@@ -1,0 +1,54 @@
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <variant>
+
+#include <gonio/brdf/bsdf_sample.h>
+#include <gonio/brdf/colour.h>
+#include <gonio/mapping/packed_stack.h>
+
+namespace gonio {
+
+/// How the densities of a stack are held.
+enum class Storage {
+  packed16,  ///< PackedStack: 16 bits a crossing; `blend` alone
+  float32    ///< Stack<float>
+};
+
+inline constexpr Storage storages[] = {Storage::packed16, Storage::float32};
+const char* to_string(Storage storage) noexcept;
+
+/// A material that needs its table no more: the stack's densities and its Colour are the BSDF,
+/// f_r cos theta_o = W pdf. sample(), pdf() and eval() agree to rounding, whatever the distance to the table.
+/// The interface, the frame and what happens below the horizon are those of Sampler.
+///
+/// Thread safety: immutable; every const member may be called concurrently. No member but the
+/// constructor allocates or locks.
+class CompactBsdf {
+ public:
+  /// @throws Error if `diagrams` cannot be held like that, or if `colour` is empty.
+  CompactBsdf(const StackGrid& diagrams, Interpolation interpolation, Storage storage, Colour colour);
+
+  /// Draws wo for `wi` from two uniform numbers in [0, 1). Empty for wi.z <= 0, and for a draw that
+  /// falls on a direction without density (a measure-zero event).
+  std::optional<BsdfSample> sample(const glm::vec3& wi, const glm::vec2& u) const noexcept;
+
+  /// The density with which sample() draws wo [1/sr], within the bounds of Sampler::pdf().
+  float pdf(const glm::vec3& wi, const glm::vec3& wo) const noexcept;
+
+  /// f_r(wi, wo) per RGB channel [1/sr], without the cosine: one inversion of the map.
+  glm::vec3 eval(const glm::vec3& wi, const glm::vec3& wo) const noexcept;
+
+  Storage storage() const noexcept { return stack_.index() == 0 ? Storage::packed16 : Storage::float32; }
+  const Colour& colour() const noexcept { return colour_; }
+  const std::variant<PackedStack, Stack<float>>& stack() const noexcept { return stack_; }
+  std::size_t bytes() const noexcept;  ///< all memory held, this object included
+
+ private:
+  std::variant<PackedStack, Stack<float>> stack_;
+  Colour colour_;
+};
+
+}  // namespace gonio

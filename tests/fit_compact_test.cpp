@@ -1,0 +1,147 @@
+#include <gonio/brdf/fit_compact.h>
+#include <gonio/brdf/proof/measure.h>
+#include <gonio/brdf/sampler.h>
+#include <gonio/fitting/synth.h>
+#include <gonio/mapping/error.h>
+#include <gonio/tests/table_files.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+namespace gonio {
+namespace {
+
+constexpr double degree = pi<double> / 180;
+
+std::shared_ptr<const BrdfTable> synthetic(const std::string& model, int thetas = 30, int phis = 36) {
+  GridFile file = synthesize_grid(parse_model(model), thetas, phis);
+  const std::size_t bytes = file.values.size() * sizeof(float);
+  return std::make_shared<const BrdfTable>(BrdfTable(GridTable(file), {"made", "made", "mbsdf", "", bytes, {}}));
+}
+
+std::shared_ptr<const BrdfTable> glossy() {
+  static const auto table = synthetic("ggx+lambert:alpha=0.2,F0=0.3,albedo=0.3/0.2/0.1");
+  return table;
+}
+
+// Measured by the report's own measure, not by the estimates of the optimiser.
+TEST(FitCompact, ReachesTheVarianceAskedFor) {
+  CompactOptions options;
+  options.max_variance = 0.01;
+  const CompactFit fit = fit_compact(*glossy(), options).best();
+  EXPECT_EQ(fit.bytes, fit.bsdf().bytes());
+  EXPECT_LE(fit.quality.worst_relvar, 0.01);
+  const Sampler sampler(glossy(), fit.diagrams, Interpolation::blend);
+  for (const double theta : {2.0, 10.0, 30.0, 50.0, 70.0, 80.0})
+    EXPECT_LE(proof::measure(proof::subject_of(sampler), theta * degree).relvar, 0.011) << theta;
+}
+
+TEST(FitCompact, MoreVarianceTakesFewerBytes) {
+  std::size_t before = SIZE_MAX;
+  for (const double variance : {0.001, 0.01, 0.1}) {
+    CompactOptions options;
+    options.max_variance = variance;
+    const std::size_t bytes = fit_compact(*glossy(), options).best().bytes;
+    EXPECT_LT(bytes, before) << variance;
+    before = bytes;
+  }
+}
+
+TEST(FitCompact, StaysWithinTheBudget) {
+  double before = 1e9;
+  for (const std::size_t budget : {4 * 1024, 64 * 1024}) {
+    CompactOptions options;
+    options.max_variance.reset();
+    options.budget = budget;
+    const CompactFit fit = fit_compact(*glossy(), options).best();
+    EXPECT_LE(fit.bytes, budget);
+    EXPECT_LT(fit.quality.eval_error, before);
+    before = fit.quality.eval_error;
+  }
+  EXPECT_LT(before, 0.02);
+}
+
+// What cannot be had is not pretended.
+TEST(FitCompact, SaysWhatItMissed) {
+  CompactOptions options;
+  options.max_variance = 1e-6;
+  options.budget = 8 * 1024;
+  const CompactFit fit = fit_compact(*glossy(), options).best();
+  EXPECT_LE(fit.bytes, options.budget);
+  EXPECT_GT(fit.quality.worst_relvar, *options.max_variance);
+}
+
+TEST(FitCompact, DiffuseIsAFewHundredBytes) {
+  CompactOptions options;
+  options.max_variance = 0.01;
+  const CompactFit fit = fit_compact(*synthetic("lambert:albedo=0.5/0.4/0.3"), options).best();
+  EXPECT_LT(fit.bytes, 1000u);
+  EXPECT_LT(fit.quality.eval_error, 0.01);
+}
+
+// Near the normal, a narrow lobe leaves its neighbours behind soonest: in the chart of outgoing directions its
+// angles crowd there.
+TEST(FitCompact, NearMirrorNeedsAnglesNearTheNormal) {
+  CompactOptions options;
+  options.max_variance = 0.05;
+  options.budget = 4 << 20;
+  options.candidates = {Chart::outgoing};
+  const auto table = std::make_shared<const BrdfTable>(
+      BrdfTable(MerlTable(synthesize_merl(parse_model("ggx:alpha=0.06,F0=0.9")), {}), {"made", "made", "merl", "", 0, {}}));
+  const CompactFit fit = fit_compact(*table, options).best();
+  std::size_t low = 0, middle = 0;
+  for (const double theta : fit.diagrams.theta_i) {
+    if (theta < 15 * degree) ++low;
+    if (theta >= 35 * degree && theta < 50 * degree) ++middle;
+  }
+  EXPECT_GT(low, middle);
+}
+
+TEST(FitCompact, TheSameEveryTime) {
+  const CompactFit a = fit_compact(*glossy()).best(), b = fit_compact(*glossy()).best();
+  ASSERT_EQ(a.diagrams.theta_i, b.diagrams.theta_i);
+  for (std::size_t k = 0; k < a.diagrams.diagrams.size(); ++k)
+    EXPECT_EQ(a.diagrams.diagrams[k].density, b.diagrams.diagrams[k].density);
+  EXPECT_EQ(a.colour.values(), b.colour.values());
+}
+
+TEST(FitCompact, BytesGoWhereTheMaterialIsSeen) {
+  CompactOptions everywhere, grazing;
+  everywhere.max_variance = grazing.max_variance = 0.01;
+  grazing.incidence = std::vector<double>(90, 0.0);
+  for (std::size_t k = 60; k < 80; ++k) grazing.incidence[k] = 0.05;
+  const auto share_below_45 = [](const CompactFit& fit) {
+    std::size_t low = 0;
+    for (const double theta : fit.diagrams.theta_i) low += theta < 45 * degree;
+    return static_cast<double>(low) / static_cast<double>(fit.diagrams.theta_i.size());
+  };
+  EXPECT_LT(share_below_45(fit_compact(*glossy(), grazing).best()), share_below_45(fit_compact(*glossy(), everywhere).best()));
+}
+
+TEST(FitCompact, BlackTable) {
+  const CompactFit fit = fit_compact(*synthetic("lambert:albedo=0")).best();
+  EXPECT_LT(fit.bytes, 2000u);
+  EXPECT_EQ(fit.bsdf().eval({0, 0, 1}, {0, 0, 1}), glm::vec3(0));
+}
+
+TEST(FitCompact, RefusesBadOptions) {
+  CompactOptions options;
+  options.max_variance = 0;
+  EXPECT_THROW(fit_compact(*glossy(), options), Error);
+  options.max_variance = 0.01, options.budget = 100;
+  EXPECT_THROW(fit_compact(*glossy(), options), Error);
+}
+
+TEST(CompactCurve, FallsWithTheBytes) {
+  const std::vector<CompactFit> curve = compact_curve(*glossy(), {0.1, 0.01, 0.001});
+  ASSERT_GE(curve.size(), 2u);
+  for (std::size_t k = 1; k < curve.size(); ++k) {
+    EXPECT_GT(curve[k].bytes, curve[k - 1].bytes);
+    EXPECT_LT(curve[k].quality.mean_relvar, curve[k - 1].quality.mean_relvar);
+  }
+}
+
+}  // namespace
+}  // namespace gonio

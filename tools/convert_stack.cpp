@@ -1,0 +1,160 @@
+#include <gonio/brdf/exr/stack_file.h>
+#include <gonio/brdf/fit_compact.h>
+#include <gonio/fitting/fit_json.h>
+#include <gonio/mapping/atomic_file.h>
+#include <gonio/mapping/error.h>
+#include <gonio/tools/convert_stack.h>
+#include <gonio/tools/front.h>
+#include <gonio/tools/input.h>
+#include <gonio/tools/progress.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+namespace gonio {
+namespace {
+
+constexpr int colour_side = 16;
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.2g", value);
+  return text;
+}
+
+StackFile named(const BrdfTable& table, const std::filesystem::path& in) {
+  StackFile file;
+  file.name = table.info().name;
+  file.source = in.filename().string();
+  return file;
+}
+
+void by_hand(const std::filesystem::path& in, const std::filesystem::path& out, const StackRequest& request,
+             const CellPolicies& policies) {
+  const BrdfTable table = load_input(in, policies);
+  StackFile file = named(table, in);
+  {
+    ProgressLine progress("building the stack of " + in.string());
+    StackOptions options = request.by_hand;
+    options.chart = request.charts.size() == 1 ? request.charts.front() : Chart::outgoing;
+    options.interpolation = request.interpolation.value_or(Interpolation::displacement);
+    const Stack<float> stack(build_stack(table, options, [&](double share) { progress.update(share); }), options.interpolation);
+    file.diagrams = stack.grid();
+    file.interpolation = options.interpolation;
+    file.colour = Colour::from_table(table, direction_map(stack), stack.theta_i(), colour_side);
+  }
+  save_stack(out, file);
+  std::printf("chart %s, %s, %zu incident angles\n", to_string(file.diagrams.chart), to_string(file.interpolation),
+              file.diagrams.theta_i.size());
+}
+
+/// What the chosen stack is, and what it was preferred to.
+std::string describe(const CompactChoice& choice, const StackRequest& request) {
+  const CompactFit& best = choice.best();
+  std::string text = std::string("chart ") + to_string(best.diagrams.chart) + ", " + std::to_string(best.diagrams.theta_i.size()) +
+                     " incident angles, " + std::to_string(best.bytes) + " bytes: relvar at most " +
+                     number(best.quality.worst_relvar) + " up to 80 degrees, evaluation error " +
+                     number(100 * best.quality.eval_error) + " %, albedo within " + number(100 * best.quality.albedo_error) + " %\n";
+  for (std::size_t k = 0; k < choice.tried.size(); ++k) {
+    const CompactFit& other = choice.tried[k];
+    if (k != choice.chosen)
+      text += std::string("  not ") + to_string(other.diagrams.chart) + ", " + std::to_string(other.bytes) + " bytes: relvar " +
+              number(other.quality.worst_relvar) + ", evaluation error " + number(100 * other.quality.eval_error) + " %\n";
+  }
+  if (request.max_variance && best.quality.worst_relvar > *request.max_variance)
+    text += "  " + number(*request.max_variance) + " was not reached within the budget\n";
+  return text;
+}
+
+/// The first fit with the variance asked for, if there is one, and the points of all.
+const StageFit* smallest_lobes(const std::shared_ptr<const BrdfTable>& table, const TableFits& fits, double max_variance,
+                               std::vector<FrontPoint>& points) {
+  const StageFit* found = nullptr;
+  for (const StageFit& stage : fits.stages) {
+    points.push_back(front_point(table, stage));
+    if (!found && points.back().relvar <= max_variance) {
+      found = &stage;
+      points.back().chosen = true;
+    }
+  }
+  return found;
+}
+
+void sized(const std::filesystem::path& in, const std::filesystem::path& out, const StackRequest& request,
+           const CellPolicies& policies) {
+  const auto table = std::make_shared<const BrdfTable>(load_input(in, policies));
+  const bool any_kind = out.extension().empty();
+  CompactOptions options;
+  if (request.budget) options.budget = *request.budget, options.max_variance.reset();
+  if (request.max_variance) options.max_variance = request.max_variance;
+  options.candidates = request.charts;
+
+  std::vector<FrontPoint> points;
+  TableFits fits;
+  const StageFit* lobes = nullptr;
+  std::optional<CompactChoice> choice;
+  {
+    ProgressLine progress("fitting " + in.string());
+    if (any_kind || !request.front.empty()) {
+      try {
+        fits = fit_table(*table, parse_model(default_fit_form));
+      } catch (const Error&) {  // a black table
+      }
+      lobes = smallest_lobes(table, fits, any_kind ? *options.max_variance : 0, points);
+    }
+    const double before = any_kind || !request.front.empty() ? 0.4 : 0;
+    progress.update(before);
+    choice = fit_compact(*table, options, [&](double share) { progress.update(before + (1 - before) * share); });
+  }
+  const CompactFit& best = choice->best();
+  if (lobes && std::find_if(points.begin(), points.end(), [](const FrontPoint& p) { return p.chosen; })->bytes >= best.bytes) {
+    for (FrontPoint& p : points) p.chosen = false;
+    lobes = nullptr;
+  }
+  if (lobes) {
+    std::filesystem::path file = out;
+    file += ".json";
+    write_stream_atomically(file, [&](std::ostream& stream) { stream << to_json(lobes->fit, lobes->errors); });
+    const FrontPoint& p = *std::find_if(points.begin(), points.end(), [](const FrontPoint& q) { return q.chosen; });
+    std::printf("%s: %s, %zu bytes adapted to the table: relvar at most %s up to 80 degrees; a stack of that variance takes %zu\n",
+                file.string().c_str(), p.id.c_str(), p.bytes, number(p.relvar).c_str(), best.bytes);
+  } else {
+    std::filesystem::path file = out;
+    if (any_kind) file += ".exr";
+    StackFile stack = named(*table, in);
+    stack.diagrams = best.diagrams;
+    stack.colour = best.colour;
+    stack.interpolation = Interpolation::blend;
+    stack.storage = Storage::packed16;
+    save_stack(file, stack);
+    std::printf("%s", describe(*choice, request).c_str());
+  }
+  if (!request.front.empty()) {
+    for (std::size_t k = 0; k < choice->tried.size(); ++k) {
+      points.push_back(front_point(choice->tried[k]));
+      points.back().chosen = !lobes && k == choice->chosen;
+    }
+    write_stream_atomically(request.front, [&](std::ostream& stream) { stream << front_json(points).dump(1) << '\n'; });
+  }
+}
+
+}  // namespace
+
+void table_to_stack(const CLI::App& verb, const std::filesystem::path& in, const std::filesystem::path& out,
+                    const StackRequest& request, const CellPolicies& policies) {
+  constexpr const char* hand[] = {"--interpolation", "--grid", "--incident", "--bytes", "--tolerance"};
+  const char* given = nullptr;
+  for (const char* option : hand)
+    if (verb.count(option) > 0) given = option;
+  if (!given) {
+    sized(in, out, request, policies);
+    return;
+  }
+  for (const char* option : {"--max-variance", "--budget", "--front"})
+    if (verb.count(option) > 0) throw Error(std::string(option) + ": found one, expected none beside " + given + ", which sets a size by hand");
+  by_hand(in, out, request, policies);
+}
+
+}  // namespace gonio
