@@ -11,11 +11,15 @@
 #include <gonio/brdf/proof/gallery.h>
 #include <gonio/brdf/proof/random.h>
 #include <gonio/mapping/error.h>
+#include <gonio/tests/batch_targets.h>
 
 namespace gonio {
 namespace {
 
 using Floats = std::vector<float>;
+
+class BatchStackOn : public OnTarget {};
+GONIO_ON_ALL_TARGETS(BatchStackOn);
 
 struct Drawn {
   Floats theta_i, u, v, x, y, z, pdf;
@@ -77,7 +81,7 @@ double spread(const Stack<double>& stack, double theta_i, double u, double v) {
   return far;
 }
 
-TEST(BatchStack, SamplesAsStackDoes) {
+TEST_P(BatchStackOn, SamplesAsStackDoes) {
   for_stacks([](const Stack<float>& stack, const Stack<double>& wide, const proof::GalleryStack&) {
     const Drawn d = draw(BatchStack(stack), 4001, 1);
     for (std::size_t k = 0; k < d.x.size(); ++k) {
@@ -92,7 +96,7 @@ TEST(BatchStack, SamplesAsStackDoes) {
   });
 }
 
-TEST(BatchStack, PdfIsThatOfTheDraws) {
+TEST_P(BatchStackOn, PdfIsThatOfTheDraws) {
   for_stacks([](const Stack<float>& stack, const Stack<double>&, const proof::GalleryStack& entry) {
     const BatchStack batch(stack);
     const Drawn d = draw(batch, 4001, 2);
@@ -107,7 +111,7 @@ TEST(BatchStack, PdfIsThatOfTheDraws) {
   });
 }
 
-TEST(BatchStack, InvertComesBack) {
+TEST_P(BatchStackOn, InvertComesBack) {
   for_stacks([](const Stack<float>& stack, const Stack<double>&, const proof::GalleryStack&) {
     const BatchStack batch(stack);
     const Drawn d = draw(batch, 4001, 2);
@@ -123,7 +127,7 @@ TEST(BatchStack, InvertComesBack) {
   });
 }
 
-TEST(BatchStack, EveryLength) {  // what does not fill a vector is computed all the same, and nothing behind it is touched
+TEST_P(BatchStackOn, EveryLength) {  // what does not fill a vector is computed all the same, and nothing behind it is touched
   const StackGrid grid = proof::gallery_stacks().front().grid;
   const BatchStack batch(Stack<float>(grid, Interpolation::displacement));
   const Drawn all = draw(batch, 70, 3);
@@ -144,7 +148,7 @@ TEST(BatchStack, EveryLength) {  // what does not fill a vector is computed all 
   }
 }
 
-TEST(BatchStack, ZeroBelowTheHorizon) {
+TEST_P(BatchStackOn, ZeroBelowTheHorizon) {
   const StackGrid grid = proof::gallery_stacks().front().grid;
   const BatchStack batch(Stack<float>(grid, Interpolation::displacement));
   const float theta_i = 0.3f, x = 0.6f, y = 0, z = -0.8f;
@@ -161,7 +165,7 @@ TEST(BatchStack, RefusesMixture) {
 }
 
 // Draws against the pdf by chi-square, both from the batch; and a control: another angle's draws fail.
-TEST(BatchStack, DrawsFollowThePdf) {
+TEST_P(BatchStackOn, DrawsFollowThePdf) {
   constexpr std::size_t draws = 100000;
   int seen = 0;
   const double significance = proof::sidak(0.01, 100);

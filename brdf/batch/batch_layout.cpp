@@ -15,7 +15,8 @@ BatchLayout::BatchLayout(const Stack<float>& stack)
       half_azimuth(stack.diagrams().front().azimuth() == Azimuth::half),
       half_chart(stack.chart() == Chart::half),
       interpolation(stack.interpolation()),
-      values(stack.theta_i()) {
+      values(stack.theta_i()),
+      guide_steps(0) {
   if (interpolation == Interpolation::mixture)
     throw Error("batch: interpolation: found mixture, expected nearest, displacement or blend");
   for (const Diagram<float>& d : stack.diagrams()) {
@@ -39,9 +40,22 @@ BatchLayout::BatchLayout(const Stack<float>& stack)
     for (std::size_t i = 0; i < m; ++i) values.push_back(own_cumulative[row(i) * columns + columns - 1]);
     for (std::size_t j = 0; j < n; ++j) values.push_back(own_r[column(j)]);
     for (const float* own_rows : {own_density, own_cumulative})
-      for (std::size_t i = 0; i < m; ++i)
-        for (std::size_t j = 0; j < n; ++j) values.push_back(own_rows[row(i) * columns + column(j)]);
+      for (std::size_t j = 0; j < n; ++j)
+        for (std::size_t i = 0; i < m; ++i) values.push_back(own_rows[row(i) * columns + column(j)]);
   }
+  if (angles == 1) return;
+  // A little wider than they are: vectors may round an angle into the next part.
+  constexpr float part = pi<float> / 2 / guide_parts, margin = 1e-3f * part;
+  for (int k = 0; k < guide_parts; ++k) {
+    guide.push_back(find_cell(values.data(), angles, static_cast<float>(k) * part - margin));
+    const float end = k + 1 < guide_parts ? static_cast<float>(k + 1) * part + margin : 4;
+    guide_steps = std::max(guide_steps, find_cell(values.data(), angles, end) - guide.back());
+  }
+}
+
+BatchColour::BatchColour(const Colour& colour) : side(colour.side()), theta_i(colour.theta_i()) {
+  for (const glm::vec3& w : colour.values())
+    for (const float channel : {w.r, w.g, w.b, 0.0f}) values.push_back(channel);
 }
 
 }  // namespace gonio

@@ -1,4 +1,4 @@
-// The square, the hemisphere and the half-vector chart on vectors, once per instruction set: included by kernels.cpp alone.
+// The square, the hemisphere and the half-vector chart on vectors, once per instruction set: included by the kernels' own files alone.
 #if defined(GONIO_BATCH_CHARTS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef GONIO_BATCH_CHARTS_INL_H
 #undef GONIO_BATCH_CHARTS_INL_H

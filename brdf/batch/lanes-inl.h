@@ -1,10 +1,12 @@
-// Arithmetic on vectors of floats, once per instruction set: included by kernels.cpp alone.
+// Arithmetic on vectors of floats, once per instruction set: included by the kernels' own files alone.
 #if defined(GONIO_BATCH_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef GONIO_BATCH_LANES_INL_H
 #undef GONIO_BATCH_LANES_INL_H
 #else
 #define GONIO_BATCH_LANES_INL_H
 #endif
+
+#include <cstdint>
 
 #include <hwy/highway.h>
 
@@ -25,6 +27,23 @@ HWY_INLINE VI set_int(int x) { return hn::Set(DI(), x); }
 HWY_INLINE V zero() { return hn::Zero(D()); }
 HWY_INLINE V clamp01(V x) { return hn::Min(hn::Max(x, zero()), set(1)); }
 HWY_INLINE V at(const float* base, VI index) { return hn::GatherIndex(D(), base, index); }
+/// The values at index and index + 1. Where gathers are instructions, one of 64 bits is half as dear as two of 32.
+struct Two {
+  V first, second;
+};
+HWY_INLINE Two two_at(const float* base, VI index) {
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX2
+  const hn::Repartition<std::int64_t, D> wide;
+  const hn::Half<DI> half;
+  const auto* pairs = reinterpret_cast<const std::int64_t*>(base);
+  const VI bytes = hn::ShiftLeft<2>(index);
+  const V lower = hn::BitCast(D(), hn::GatherOffset(wide, pairs, hn::PromoteTo(wide, hn::LowerHalf(half, bytes))));
+  const V upper = hn::BitCast(D(), hn::GatherOffset(wide, pairs, hn::PromoteTo(wide, hn::UpperHalf(half, bytes))));
+  return {hn::ConcatEven(D(), upper, lower), hn::ConcatOdd(D(), upper, lower)};
+#else
+  return {at(base, index), at(base + 1, index)};
+#endif
+}
 HWY_INLINE V mix(V a, V x, V y) { return hn::MulAdd(a, y, hn::NegMulAdd(a, x, x)); }  // (1 - a) x + a y
 
 /// x / y, 0 where y is not positive.
@@ -66,14 +85,16 @@ HWY_INLINE V abs_atan2(V y, V x) {
 }
 
 /// The cube root of x >= 0, 4e-7 relative where x is a normal number: a third of the exponent, then two of Halley's steps.
-HWY_INLINE V cube_root(V x) {
+/// Others are kept from making numbers so small that the machine computes them in microcode.
+HWY_INLINE V cube_root(V value) {
+  const V x = hn::Max(value, set(1e-30f));
   const V bits = hn::ConvertTo(D(), hn::BitCast(DI(), x));
   V t = hn::BitCast(D(), hn::Add(hn::ConvertTo(DI(), hn::Mul(bits, set(1.0f / 3))), set_int(0x2a514067)));
   for (int step = 0; step < 2; ++step) {
     const V cube = hn::Mul(hn::Mul(t, t), t);
     t = hn::Mul(t, hn::Div(hn::MulAdd(set(2), x, cube), hn::MulAdd(set(2), cube, x)));
   }
-  return hn::IfThenElseZero(hn::Gt(x, zero()), t);
+  return hn::IfThenElseZero(hn::Gt(value, zero()), t);
 }
 
 /// cos(acos(x) / 3) for x in [-1, 1]. Its square root at x = -1 taken out, it is analytic: a polynomial through 9
@@ -141,28 +162,23 @@ HWY_INLINE V invert_azimuth(V width, V m0, V m1, V inside) {
 
 /// monotone_root() in every lane, until all are done.
 template <class Function>
-HWY_INLINE V root(const Function& function, V target, V x, V lo, V hi, V tolerance) {
+HWY_INLINE V root(const Function& function, V x, V lo, V hi) {
   M active = hn::Le(lo, hi);
-  V last_width = hn::Sub(hi, lo);
+  V last = hn::Sub(hi, lo), before_last = last;
   for (int step = 0; step < max_root_steps; ++step) {
     const auto [value, derivative] = function(x);
-    const V error = hn::Sub(value, target);
-    active = hn::And(active, hn::Gt(hn::Abs(error), tolerance));
-    const M above = hn::Gt(error, zero());
-    hi = hn::IfThenElse(hn::And(active, above), x, hi);
-    lo = hn::IfThenElse(hn::AndNot(above, active), x, lo);
-    const V width = hn::Sub(hi, lo);
-    active = hn::And(active, hn::Gt(width, hn::Mul(set(1.1920929e-7f), hi)));
-    if (hn::AllFalse(D(), active)) break;
-    V next = hn::Sub(x, hn::Div(error, derivative));
-    M good = hn::And(hn::Gt(derivative, zero()), hn::And(hn::Gt(next, lo), hn::Lt(next, hi)));
-    if (step % 2 == 1) {
-      good = hn::And(good, hn::Le(width, hn::Mul(set(0.5f), last_width)));
-      last_width = width;
-    }
-    next = hn::IfThenElse(good, next, hn::MulAdd(set(0.5f), width, lo));
-    active = hn::And(active, hn::Ne(next, x));
+    active = hn::And(active, hn::Ne(value, zero()));
+    const M above = hn::Gt(value, zero());
+    hi = hn::IfThenElse(above, x, hi);
+    lo = hn::IfThenElse(above, lo, x);
+    V next = hn::Sub(x, hn::Div(value, derivative));
+    const M inside = hn::And(hn::Ge(next, lo), hn::Le(next, hi));
+    const M short_enough = hn::Le(hn::Abs(hn::Sub(next, x)), hn::Mul(set(0.5f), before_last));
+    next = hn::IfThenElse(hn::And(inside, short_enough), next, hn::MulAdd(set(0.5f), hn::Sub(hi, lo), lo));
+    before_last = last, last = hn::Abs(hn::Sub(next, x));
     x = hn::IfThenElse(active, next, x);
+    active = hn::And(active, hn::Gt(last, hn::Mul(set(2 * 1.1920929e-7f), x)));
+    if (hn::AllFalse(D(), active)) break;
   }
   return x;
 }

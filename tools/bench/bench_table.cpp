@@ -1,4 +1,5 @@
-// Measured tables: the files of RGL that GONIO_TEST_DATA has (none: these are skipped), and a table in the layout of MERL.
+// Tables: a file of RGL that GONIO_TEST_DATA has (none: skipped), made-up ones in the layouts of MERL and MBSDF, and
+// samplers with RGB weights, one at a time and in batches, self-contained and backed by a table.
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>
@@ -6,9 +7,12 @@
 #include <string>
 
 #include <gonio/brdf/baseline.h>
+#include <gonio/brdf/batch/batch_sampler.h>
+#include <gonio/brdf/proof/gallery.h>
 #include <gonio/brdf/proof/random.h>
 #include <gonio/brdf/sampler.h>
 #include <gonio/brdf/write.h>
+#include <gonio/tools/bench/stacks.h>
 
 namespace gonio::bench {
 namespace {
@@ -75,8 +79,105 @@ void rgl_to_merl(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(sample_as_merl(*table));
 }
 
+const BrdfTable& made_grid() {
+  static const BrdfTable table = to_table(proof::gallery_tables().front());
+  return table;
+}
+void grid_eval(benchmark::State& state) { evaluate(state, std::make_shared<const BrdfTable>(made_grid())); }
+void merl_eval(benchmark::State& state) {
+  static const auto table = std::make_shared<const BrdfTable>(MerlTable(sample_as_merl(made_grid()), {}), BrdfTable::Info{});
+  evaluate(state, table);
+}
+
+/// A self-contained stack of 32 diagrams of 33 x 33 lines with 8 x 4 colours each.
+CompactBsdf coloured(Interpolation interpolation, Chart chart) {
+  const StackGrid grid = lobe_stack(32, 33, 33, chart);
+  std::vector<float> theta_i;
+  for (const double theta : grid.theta_i) theta_i.push_back(static_cast<float>(theta));
+  return CompactBsdf(grid, interpolation, Storage::float32,
+                     Colour(theta_i, 8, std::vector<glm::vec3>(32 * 32, glm::vec3(0.5f, 0.4f, 0.3f))));
+}
+enum class Call { sample, pdf, eval };
+
+template <class S>
+void one_by_one(benchmark::State& state, Call call, const S& sampler) {
+  Directions d(std::make_shared<const BrdfTable>(made_grid()));
+  if (call == Call::sample) return draw(state, sampler, d);
+  for (std::size_t k = 0; k < queries; ++k)
+    if (const auto s = sampler.sample(d.wi[k], d.u[k])) d.wo[k] = s->wo;
+  for (auto _ : state)
+    for (std::size_t k = 0; k < queries; ++k) {
+      if (call == Call::pdf) benchmark::DoNotOptimize(sampler.pdf(d.wi[k], d.wo[k]));
+      if (call == Call::eval) benchmark::DoNotOptimize(sampler.eval(d.wi[k], d.wo[k]));
+    }
+  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * queries));
+}
+
+template <class S>
+void in_batches(benchmark::State& state, Call call, const S& sampler) {
+  const Directions d(std::make_shared<const BrdfTable>(made_grid()));
+  const BatchSampler batch(sampler);
+  std::vector<float> a[12];
+  for (auto& array : a) array.resize(queries);
+  for (std::size_t k = 0; k < queries; ++k) {
+    for (int c = 0; c < 3; ++c) a[c][k] = d.wi[k][c];
+    a[3][k] = d.u[k].x, a[4][k] = d.u[k].y;
+  }
+  const Arrays3 wi{a[0].data(), a[1].data(), a[2].data()}, wo{a[5].data(), a[6].data(), a[7].data()},
+      rgb{a[9].data(), a[10].data(), a[11].data()};
+  batch.sample_n(queries, wi, a[3].data(), a[4].data(), wo, a[8].data(), rgb);
+  for (auto _ : state) {
+    if (call == Call::sample) batch.sample_n(queries, wi, a[3].data(), a[4].data(), wo, a[8].data(), rgb);
+    if (call == Call::pdf) batch.pdf_n(queries, wi, wo, a[8].data());
+    if (call == Call::eval) batch.eval_n(queries, wi, wo, rgb);
+  }
+  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * queries));
+}
+
+/// Backed by the file of RGL that rgl_sample() has, with the stack that is built for it.
+void rgl_backed(benchmark::State& state, bool batch) {
+  const auto table = rgl(state);
+  if (!table) return;
+  static const Sampler sampler(table);
+  batch ? in_batches(state, Call::sample, sampler) : one_by_one(state, Call::sample, sampler);
+}
+/// The same stack with its own colours.
+void rgl_contained(benchmark::State& state, bool batch) {
+  const auto table = rgl(state);
+  if (!table) return;
+  static const CompactBsdf sampler = [&] {
+    const StackGrid grid = build_stack(*table);
+    const Stack<float> stack(grid, Interpolation::displacement);
+    return CompactBsdf(grid, Interpolation::displacement, Storage::float32,
+                       Colour::from_table(*table, direction_map(stack), stack.theta_i(), 8));
+  }();
+  batch ? in_batches(state, Call::sample, sampler) : one_by_one(state, Call::sample, sampler);
+}
+
+const int registered = [] {
+  for (const auto& [interpolation, chart] :
+       {std::pair{Interpolation::displacement, Chart::outgoing}, {Interpolation::blend, Chart::half}}) {
+    const std::string name = std::string("/") + to_string(interpolation) + "/" + to_string(chart);
+    for (const auto& [call, verb] : {std::pair{Call::sample, "sample"}, {Call::pdf, "pdf"}, {Call::eval, "eval"}})
+      for (const bool batch : {false, true})
+        benchmark::RegisterBenchmark((std::string("rgb_") + verb + (batch ? "_batch" : "") + name).c_str(),
+                                     [=, i = interpolation, c = chart, o = call](benchmark::State& state) {
+                                       const CompactBsdf sampler = coloured(i, c);
+                                       batch ? in_batches(state, o, sampler) : one_by_one(state, o, sampler);
+                                     });
+  }
+  for (const bool batch : {false, true}) {
+    const std::string end = batch ? "_batch" : "";
+    benchmark::RegisterBenchmark(("rgl_stack_sample" + end).c_str(), rgl_backed, batch);
+    benchmark::RegisterBenchmark(("rgl_contained_sample" + end).c_str(), rgl_contained, batch);
+  }
+  return 0;
+}();
+
 BENCHMARK(rgl_sample);
 BENCHMARK(rgl_eval);
+BENCHMARK(merl_eval);
+BENCHMARK(grid_eval);
 BENCHMARK(rgl_load)->Unit(benchmark::kMillisecond);
 BENCHMARK(rgl_to_merl)->Unit(benchmark::kMillisecond)->UseRealTime();
 
