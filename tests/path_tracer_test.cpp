@@ -1,0 +1,242 @@
+#include <gonio/brdf/fit_compact.h>
+#include <gonio/tools/render/path_tracer.h>
+
+#include <gonio/fitting/synth.h>
+#include <gonio/tests/table_files.h>
+#include <gonio/tools/render/film.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numeric>
+
+namespace gonio {
+namespace {
+
+constexpr float degree = pi<float> / 180;
+
+std::shared_ptr<const BrdfTable> table_of(BrdfTable::Data data) {
+  return std::make_shared<const BrdfTable>(std::move(data), BrdfTable::Info{"test", "test", "test", "", 0, {}});
+}
+
+/// An f_r of 0.5 / pi in every cell.
+std::shared_ptr<const BrdfTable> grey_table() {
+  return table_of(GridTable(GridFile{6, 6, 8, 3, std::vector<float>(3 * 6 * 6 * 8, 0.5f / pi<float>), "", false}));
+}
+
+std::shared_ptr<const BrdfTable> glossy_table() {
+  static const auto table = table_of(GridTable(synthesize_grid(parse_model("ggx:alpha=0.25,F0=0.3+lambert:albedo=0.5/0.3/0.2"), 24, 48)));
+  return table;
+}
+
+std::shared_ptr<const BrdfTable> rgl_table() {
+  std::vector<Problem> problems;
+  return table_of(RglTable(parse_rgl(test::make_rgl({0.20f, 0.25f, 0.30f}).bytes(), problems), {}));
+}
+
+using Light = glm::vec3 (*)(const glm::vec3& direction);
+glm::vec3 constant(const glm::vec3&) { return glm::vec3(1); }
+glm::vec3 gradient(const glm::vec3& w) { return glm::vec3(0.5f + 0.5f * w.z, 0.5f + 0.4f * w.x, 0.6f); }
+glm::vec3 small_spot(const glm::vec3& w) {
+  const bool inside = glm::dot(w, glm::normalize(glm::vec3(-0.5f, -0.4f, 0.8f))) > std::cos(8 * degree);
+  return inside ? glm::vec3(60, 50, 40) : glm::vec3(0.02f);
+}
+
+std::shared_ptr<const Environment> environment(Light light) {
+  RgbImage image{128, 64, {}};
+  for (int row = 0; row < image.height; ++row)
+    for (int column = 0; column < image.width; ++column) {
+      const float theta = pi<float> * (static_cast<float>(row) + 0.5f) / 64, phi = pi<float> - 2 * pi<float> * (static_cast<float>(column) + 0.5f) / 128;
+      image.pixels.push_back(light({std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)}));
+    }
+  return std::make_shared<const Environment>(std::move(image), "test");
+}
+
+/// A ball on a white plate; both fill the view.
+Scene ball(Light light, std::shared_ptr<const Bsdf> bsdf) {
+  Scene scene;
+  scene.camera = {{0, -6, 4}, {0, 0, 0.7f}, {0, 0, 1}, 20 * degree, 10, 10};
+  scene.environment = environment(light);
+  scene.materials.push_back({"ball", std::move(bsdf), true, nullptr, {}, {}});
+  scene.materials.push_back({"plate", make_bsdf(LambertSampler(glm::vec3(0.7f))), true, nullptr, {}, {}});
+  Object object{make_shape("sphere", ""), 0, glm::vec3(0)}, plate{make_shape("square", ""), 1, glm::vec3(0)};
+  glm::mat4 up(1.0f), wide(20.0f);
+  up[3] = {0, 0, 1, 1};
+  wide[3] = {0, 0, 0, 1};
+  transform(object.mesh, up);
+  transform(plate.mesh, wide);
+  scene.objects = {std::move(object), std::move(plate)};
+  return scene;
+}
+
+double mean_luminance(const RgbImage& image) {
+  double sum = 0;
+  for (const glm::vec3& p : image.pixels) sum += static_cast<double>(luminance(p));
+  return sum / static_cast<double>(image.pixels.size());
+}
+
+/// The image's mean luminance and its standard error, from independent repeats.
+struct Estimate {
+  double mean, error;
+};
+
+Estimate estimate(const Scene& scene, Strategy strategy) {
+  constexpr std::uint32_t repeats = 24, samples = 16;
+  const PathTracer tracer(scene, strategy, 2);
+  std::vector<double> means(repeats, 0.0);
+  for (std::uint32_t k = 0; k < repeats; ++k)
+    for (std::uint32_t pixel = 0; pixel < 100; ++pixel)
+      for (std::uint32_t s = 0; s < samples; ++s) {
+        PathSequence random(100 * static_cast<std::uint32_t>(strategy) + k, pixel, s);
+        const glm::vec2 u = random.next();
+        const PathResult path = tracer.trace(static_cast<float>(pixel % 10) + u.x, static_cast<float>(pixel / 10) + u.y, random);
+        means[k] += static_cast<double>(luminance(path.radiance)) / (100 * samples);
+      }
+  const double n = repeats, mean = std::accumulate(means.begin(), means.end(), 0.0) / n;
+  double squares = 0;
+  for (const double m : means) squares += (m - mean) * (m - mean);
+  return {mean, std::sqrt(squares / (n - 1) / n)};
+}
+
+/// In standard errors.
+double difference(const Estimate& a, const Estimate& b) { return std::abs(a.mean - b.mean) / std::hypot(a.error, b.error); }
+
+struct Case {
+  const char* name;
+  Light light;
+};
+const Case lights[] = {{"constant", constant}, {"gradient", gradient}, {"small spot", small_spot}};
+
+void expect_strategies_agree(const std::shared_ptr<const Bsdf>& bsdf, const std::string& name) {
+  for (const Case& light : lights) {
+    const Scene scene = ball(light.light, bsdf);
+    const Estimate mis = estimate(scene, Strategy::mis), bsdf_alone = estimate(scene, Strategy::bsdf), light_alone = estimate(scene, Strategy::light);
+    EXPECT_LT(difference(mis, bsdf_alone), 3) << name << ", " << light.name << ": " << mis.mean << " and " << bsdf_alone.mean;
+    EXPECT_LT(difference(mis, light_alone), 3) << name << ", " << light.name << ": " << mis.mean << " and " << light_alone.mean;
+    EXPECT_LT(difference(bsdf_alone, light_alone), 3) << name << ", " << light.name << ": " << bsdf_alone.mean << " and " << light_alone.mean;
+    EXPECT_LT(mis.error, 0.01 * mis.mean) << name << ", " << light.name;  // the comparison says something
+  }
+}
+
+// A plate of albedo 0.5 that fills the view, in an environment of radiance 1.
+TEST(PathTracer, WhiteFurnaceOfALambertTable) {
+  Scene scene;
+  scene.camera = {{1, -2, 3}, {0, 0, 0}, {0, 0, 1}, 20 * degree, 16, 16};
+  scene.environment = environment(constant);
+  scene.materials.push_back({"grey", make_bsdf(Sampler(grey_table())), true, nullptr, {}, {}});
+  scene.objects.push_back({make_shape("square", ""), 0, glm::vec3(0)});
+  transform(scene.objects[0].mesh, glm::mat4(10.0f));
+  for (const Strategy strategy : strategies) {
+    RenderOptions options;
+    options.strategy = strategy;
+    Film film(scene, options);
+    film.add_samples(256);
+    EXPECT_NEAR(mean_luminance(film.radiance()), 0.5, 0.5e-3) << to_string(strategy);
+    if (strategy != Strategy::bsdf) continue;
+    for (const glm::vec3& p : film.radiance().pixels) EXPECT_NEAR(luminance(p), 0.5f, 0.5e-2f);
+  }
+}
+
+TEST(PathTracer, StrategiesAgreeOnEveryMethod) {
+  StackOptions small;
+  small.incident = small.meridians = small.parallels = 16;
+  MethodBuilder builder(glossy_table(), parse_model("ggx:alpha=0.3,F0=0.3+lambert:albedo=0.4"), small);
+  for (const SamplingMethod method : sampling_methods)
+    if (builder.available(method)) expect_strategies_agree(builder.build(method), to_string(method));
+}
+
+TEST(PathTracer, StrategiesAgreeOnTheRglChain) {
+  expect_strategies_agree(MethodBuilder(rgl_table()).build(SamplingMethod::rgl), "rgl");
+}
+
+TEST(PathTracer, StrategiesAgreeOnCompactBsdfs) {
+  CompactOptions options;
+  options.max_variance = 0.01;
+  expect_strategies_agree(make_bsdf(fit_compact(*glossy_table(), options).best().bsdf()), "compact");
+}
+
+TEST(PathTracer, StrategiesAgreeOnAreaLights) {
+  Scene scene = ball(constant, make_bsdf(Sampler(glossy_table())));
+  scene.environment = nullptr;
+  Object lamp{make_shape("square", ""), 1, glm::vec3(20, 15, 10)};
+  glm::mat4 place(1.0f);
+  place[1] = {0, -1, 0, 0}, place[2] = {0, 0, -1, 0}, place[3] = {0.5f, -1.5f, 4, 1};  // faces down
+  transform(lamp.mesh, place);
+  scene.objects.push_back(lamp);
+  const Estimate mis = estimate(scene, Strategy::mis), bsdf = estimate(scene, Strategy::bsdf), light = estimate(scene, Strategy::light);
+  EXPECT_GT(mis.mean, 0.05);
+  EXPECT_LT(difference(mis, bsdf), 3);
+  EXPECT_LT(difference(mis, light), 3);
+  EXPECT_LT(difference(bsdf, light), 3);
+}
+
+/// A sampler whose weight and pdf() are those of a density 5 % too high.
+class WrongPdf {
+ public:
+  explicit WrongPdf(Sampler sampler) : sampler_(std::move(sampler)) {}
+  std::optional<BsdfSample> sample(const glm::vec3& wi, const glm::vec2& u) const noexcept {
+    auto s = sampler_.sample(wi, u);
+    if (s) s->pdf *= 1.05f, s->weight /= 1.05f;
+    return s;
+  }
+  float pdf(const glm::vec3& wi, const glm::vec3& wo) const noexcept { return 1.05f * sampler_.pdf(wi, wo); }
+  glm::vec3 eval(const glm::vec3& wi, const glm::vec3& wo) const noexcept { return sampler_.eval(wi, wo); }
+
+ private:
+  Sampler sampler_;
+};
+
+TEST(PathTracer, NegativeControlAPdfThatIsFivePercentOffIsSeen) {
+  const auto wrong = make_bsdf(WrongPdf(Sampler(glossy_table())));
+  // Not the small spot: there MIS draws from the light, nearly always, and is right to.
+  for (const Light light : {constant, gradient}) {
+    const Scene scene = ball(light, wrong);
+    EXPECT_GT(difference(estimate(scene, Strategy::mis), estimate(scene, Strategy::light)), 3);
+  }
+}
+
+// No surface reflects more than it receives: nothing is brighter than the environment.
+TEST(PathTracer, EnergyIsNotGained) {
+  const Scene scene = ball(constant, make_bsdf(Sampler(glossy_table())));
+  RenderOptions options;
+  options.max_bounces = 64;
+  Film film(scene, options);
+  film.add_samples(256);
+  for (const glm::vec3& p : film.radiance().pixels) {
+    EXPECT_LT(luminance(p), 1.0f);
+    EXPECT_GT(luminance(p), 0.2f);
+  }
+}
+
+// E = I cos / d^2, whatever the strategy: nothing hits such a light by chance.
+TEST(PathTracer, GoniometricLightIlluminatesByTheInverseSquare) {
+  LightDiagram diagram{{0, 2 * pi<double>}, {0, pi<double> / 2, pi<double>}, {100, 50, 0, 100, 50, 0}, {}};
+  Scene scene;
+  scene.camera = {{0, 0, 3}, {0, 0, 0}, {0, 1, 0}, 0.1f * degree, 4, 4};
+  scene.materials.push_back({"grey", make_bsdf(LambertSampler(glm::vec3(0.5f))), true, nullptr, {}, {}});
+  scene.objects.push_back({make_shape("square", ""), 0, glm::vec3(0)});
+  scene.lights.push_back({{0, 0, 5}, glm::mat3(1.0f), glm::vec3(1), std::make_shared<const EmissionSampler<float>>(diagram)});
+  for (const Strategy strategy : strategies) {
+    RenderOptions options;
+    options.strategy = strategy;
+    Film film(scene, options);
+    film.add_samples(4);
+    EXPECT_NEAR(mean_luminance(film.radiance()), 0.5 / pi<double> * 100 / 25, 1e-3) << to_string(strategy);
+  }
+}
+
+TEST(PathTracer, TheBackOfAOneSidedMaterialIsBlack) {
+  Scene scene = ball(constant, make_bsdf(Sampler(glossy_table())));
+  scene.camera.position = {0, 0, 1};  // inside the ball
+  scene.camera.target = {0, 1, 1};
+  for (const bool two_sided : {true, false}) {
+    scene.materials[0].two_sided = two_sided;
+    scene.objects[0].emission = glm::vec3(0);
+    Film film(scene, {});
+    film.add_samples(1);
+    for (const glm::vec3& p : film.albedo().pixels) EXPECT_EQ(luminance(p) > 0, two_sided);
+  }
+}
+
+}  // namespace
+}  // namespace gonio

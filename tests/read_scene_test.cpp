@@ -1,0 +1,128 @@
+#include <gonio/tools/render/read_scene.h>
+
+#include <gonio/mapping/error.h>
+#include <gonio/tests/table_files.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace gonio {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+json good() {
+  return json::parse(R"({
+    "camera": {"position": [0, -5, 2], "target": [0, 0, 1], "up": [0, 0, 1], "vertical_fov": 30, "resolution": [64, 32]},
+    "environment": {"constant": [1, 0.5, 0.25], "scale": 2, "turn": 90},
+    "materials": {"white": {"albedo": 0.8}, "black": {"albedo": [0, 0, 0], "two_sided": false}},
+    "objects": [{"shape": "sphere", "material": "white", "scale": [1, 2, 3], "rotate": [90, 0, 0], "translate": [0, 0, 4], "emission": 1},
+                {"shape": "square", "material": "black"}]
+  })");
+}
+
+std::string error_of(const json& scene) {
+  try {
+    make_scene(scene, "s.json", {});
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+json with(const char* pointer, const json& value) {
+  json scene = good();
+  scene[json::json_pointer(pointer)] = value;
+  return scene;
+}
+
+TEST(ReadScene, ReadsEveryField) {
+  const Scene scene = make_scene(good(), "s.json", {});
+  EXPECT_EQ(scene.camera.width, 64);
+  EXPECT_EQ(scene.camera.height, 32);
+  EXPECT_NEAR(scene.camera.vertical_fov, pi<float> / 6, 1e-6f);
+  EXPECT_EQ(scene.environment->radiance({0, 0, 1}), glm::vec3(2, 1, 0.5f));
+  ASSERT_EQ(scene.objects.size(), 2u);
+  EXPECT_EQ(scene.objects[0].emission, glm::vec3(1));
+  EXPECT_FALSE(scene.materials[scene.objects[1].material].two_sided);
+  // Scaled, then turned about x (y to z, z to -y), then moved.
+  glm::vec3 low(1e9f), high(-1e9f);
+  for (const glm::vec3& p : scene.objects[0].mesh.positions)
+    for (int c = 0; c < 3; ++c) low[c] = std::min(low[c], p[c]), high[c] = std::max(high[c], p[c]);
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_NEAR(low[c], glm::vec3(-1, -3, 2)[c], 1e-3f);
+    EXPECT_NEAR(high[c], glm::vec3(1, 3, 6)[c], 1e-3f);
+  }
+}
+
+TEST(ReadScene, ErrorsNameFileAndField) {
+  EXPECT_EQ(error_of(good()), "none");
+  const std::pair<json, const char*> cases[] = {
+      {with("/colour", 1), "s.json: colour: found an unknown field"},
+      {with("/camera/fov", 30), "s.json: camera.fov: found an unknown field"},
+      {with("/camera/position", json::array({1, 2})), "s.json: camera.position: found [1,2], expected three numbers"},
+      {with("/camera/vertical_fov", 180), "s.json: camera.vertical_fov: found 180, expected a number from 0.01 to 179"},
+      {with("/camera/resolution", json::array({0, 5})), "s.json: camera.resolution: found [0,5]"},
+      {with("/camera/target", json::array({0, -5, 2})), "s.json: camera.target: found a view along up, or of no length"},
+      {with("/camera", 3), "s.json: camera: found 3, expected an object"},
+      {with("/environment/constant", -1), "s.json: environment.constant: found -1, expected a number from 0"},
+      {with("/environment", json::object()), "s.json: environment.file: found none, expected file, sky or constant"},
+      {with("/environment/suns", 2), "s.json: environment.suns: found an unknown field"},
+      {with("/materials/white/albedo", 1.5), "s.json: materials.white.albedo: found 1.5, expected a number from 0 to 1"},
+      {with("/materials/white/file", "a.bsdf"), "s.json: materials.white.file: found albedo as well"},
+      {with("/materials/white", json::object()), "s.json: materials.white.file: found none"},
+      {with("/materials/white/two_sided", 1), "s.json: materials.white.two_sided: found 1, expected true or false"},
+      {with("/materials/white", json{{"file", "/nonexistent/a.bsdf"}}), "/nonexistent/a.bsdf"},
+      {with("/objects/0/material", "red"), "s.json: objects[0].material: found 'red', expected the name of one of the materials"},
+      {with("/objects/0/shape", "torus"), "s.json: objects[0].shape: found 'torus', expected square, sphere"},
+      {with("/objects/0/scale", 0), "s.json: objects[0].scale: found 0"},
+      {with("/objects/0/file", "a.obj"), "s.json: objects[0].shape: found file as well"},
+      {with("/objects", json::array()), "s.json: objects: found []"},
+      {with("/lights", json::array({json{{"file", "/nonexistent/lamp.ies"}, {"position", {0, 0, 1}}}})), "/nonexistent/lamp.ies"},
+  };
+  for (const auto& [scene, message] : cases) EXPECT_THAT(error_of(scene), HasSubstr(message));
+}
+
+TEST(ReadScene, RefusesWhatIsNoJson) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "s.json", "{\"camera\": ");
+  try {
+    read_scene(folder / "s.json");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("s.json: found no valid JSON"));
+  }
+}
+
+TEST(ReadScene, MethodsHaveToSuitTheTable) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "grey.mbsdf", test::make_mbsdf(1, 4, 4, std::vector<float>(3 * 4 * 4 * 4, 0.1f)));
+  const auto scene = [&](const char* sampling) { return with("/materials/white", json{{"file", (folder / "grey.mbsdf").string()}, {"sampling", sampling}}); };
+  EXPECT_EQ(error_of(scene("cosine")), "none");
+  EXPECT_THAT(error_of(scene("best")), HasSubstr("s.json: materials.white.sampling: found 'best', expected one of default, cosine"));
+  EXPECT_THAT(error_of(scene("rgl")), HasSubstr("s.json: materials.white.sampling: found rgl, expected a method for a mbsdf file"));
+}
+
+TEST(ReadScene, MeshesAndLightsAreRead) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "quad.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+  test::write_file(folder / "one.ply",
+                   "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
+                   "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  test::write_file(folder / "lamp.ies", "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 1 1 2 0 0 0\n1 1 10\n0 45 90\n0\n100 80 0\n");
+  test::write_file(folder / "empty.obj", "v 0 0 0\n");
+  json scene = good();
+  scene["objects"] = {{{"file", "quad.obj"}, {"material", "white"}}, {{"file", "one.ply"}, {"material", "white"}}};
+  scene["lights"] = {{{"file", "lamp.ies"}, {"position", {0, 0, 3}}, {"rotate", {90, 0, 0}}, {"scale", 0.5}}};
+  const Scene read = make_scene(scene, "s.json", folder.path());
+  EXPECT_EQ(read.objects[0].mesh.triangles.size(), 2u);
+  EXPECT_EQ(read.objects[1].mesh.triangles.size(), 1u);
+  ASSERT_EQ(read.lights.size(), 1u);
+  // Turned about x, the nadir (-z) points along +y.
+  EXPECT_NEAR((read.lights[0].to_light * glm::vec3(0, 1, 0)).z, -1, 1e-6f);
+  scene["objects"][0]["file"] = "empty.obj";
+  EXPECT_THROW(make_scene(scene, "s.json", folder.path()), Error);
+}
+
+}  // namespace
+}  // namespace gonio

@@ -1,0 +1,88 @@
+// Runs the verbs render and compare of the program GONIO_TOOL as a user does.
+
+#include <gonio/tests/table_files.h>
+#include <gonio/tools/render/exr_image.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+namespace gonio {
+namespace {
+
+class RenderTool : public testing::Test {
+ protected:
+  RenderTool() {
+    test::write_file(folder_ / "grey.mbsdf", test::make_mbsdf(1, 6, 8, std::vector<float>(3 * 6 * 6 * 8, 0.5f / static_cast<float>(test::pi))));
+  }
+  int run(const std::string& arguments, const std::string& verb = "render") const {
+    const int status = std::system(("cd '" + folder_.path().string() + "' && '" GONIO_TOOL "' " + verb + " " + arguments + " >out 2>err").c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  std::string text(const std::string& name) const { return test::file_bytes(folder_ / name); }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(RenderTool, AMaterialOnTheDefaultScene) {
+  ASSERT_EQ(run("--material grey.mbsdf --size 40x30 --samples 4 -o a.exr"), 0) << text("err");
+  ASSERT_EQ(run("--material grey.mbsdf --size 40x30 --samples 4 -o b.exr --threads 1"), 0) << text("err");
+  EXPECT_EQ(text("a.exr"), text("b.exr"));
+  const RgbImage image = load_rgb(folder_ / "a.exr");
+  EXPECT_EQ(image.width, 40);
+  EXPECT_EQ(image.height, 30);
+  for (const glm::vec3& p : image.pixels) EXPECT_GT(p.g, 0.0f);
+  for (const char* channel : {"albedo.R", "normal.X", "variance.G"}) EXPECT_NE(text("a.exr").find(channel), std::string::npos) << channel;
+  ASSERT_EQ(run("--material grey.mbsdf --size 40x30 --seconds 0.2 -o a.png --sampling cosine"), 0) << text("err");
+  EXPECT_EQ(text("a.png").substr(1, 3), "PNG");
+}
+
+TEST_F(RenderTool, AScene) {
+  test::write_file(folder_ / "s.json", R"({"camera": {"position": [0, 0, 3], "target": [0, 0, 0], "up": [0, 1, 0], "vertical_fov": 10, "resolution": [8, 8]},
+    "environment": {"constant": 1}, "materials": {"m": {"file": "grey.mbsdf"}}, "objects": [{"shape": "square", "material": "m"}]})");
+  ASSERT_EQ(run("s.json --samples 256 -o a.exr"), 0) << text("err");
+  for (const glm::vec3& p : load_rgb(folder_ / "a.exr").pixels) EXPECT_NEAR(p.g, 0.5f, 0.01f);
+}
+
+// The comparison holds what docs/render.md says, and its page needs no other file.
+TEST_F(RenderTool, Compare) {
+  ASSERT_EQ(run("--material grey.mbsdf --size 16x16 --seconds 0.05 --reference-seconds 0.2 --methods default,cosine -o c", "compare"), 0) << text("err");
+  const nlohmann::json j = nlohmann::json::parse(text("c/compare.json"));
+  ASSERT_EQ(j["runs"].size(), 4u);
+  for (const nlohmann::json& run : j["runs"]) {
+    for (const char* key : {"method", "strategy", "samples", "seconds", "relmse", "standard_error", "ratio", "relmse_at_equal_samples", "cost_ratio", "convergence"})
+      EXPECT_TRUE(run.contains(key)) << key;
+    const std::string name = run["method"].get<std::string>() + "_" + run["strategy"].get<std::string>();
+    EXPECT_EQ(text("c/" + name + ".png").substr(1, 3), "PNG");
+    EXPECT_EQ(text("c/" + name + "_difference.png").substr(1, 3), "PNG");
+    EXPECT_NE(text("c/compare.md").find("| " + run["method"].get<std::string>() + " |"), std::string::npos);
+  }
+  EXPECT_NE(text("c/compare.html").find("data:image/png;base64,"), std::string::npos);
+  EXPECT_EQ(text("c/compare.html").find("src=\"http"), std::string::npos);
+  EXPECT_EQ(run("--material grey.mbsdf --methods rgl -o d", "compare"), 1);
+  EXPECT_NE(text("err").find("--methods: found rgl"), std::string::npos) << text("err");
+  EXPECT_EQ(run("--material grey.mbsdf --seconds 0 -o d", "compare"), 1);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "d"));
+}
+
+TEST_F(RenderTool, ErrorsAreOneLineAndLeaveNoFile) {
+  test::write_file(folder_ / "s.json", R"({"materials": {}, "objects": []})");
+  const std::pair<const char*, const char*> cases[] = {
+      {"", "SCENE: found none, expected SCENE.json or --material FILE"},
+      {"s.json --material grey.mbsdf", "SCENE: found one and --material"},
+      {"s.json", "s.json: objects: found []"},
+      {"--material none.bsdf", "none.bsdf"},
+      {"--material grey.mbsdf --samples 0", "--samples: found 0"},
+      {"--material grey.mbsdf --sampling best", "--sampling: found 'best', expected one of default, cosine"},
+      {"--material grey.mbsdf --sampling rgl", "rgl"},
+  };
+  for (const auto& [arguments, message] : cases) {
+    EXPECT_EQ(run(std::string(arguments) + " -o x.exr"), 1) << arguments;
+    EXPECT_NE(text("err").find(std::string("gonio render: ")), std::string::npos) << text("err");
+    EXPECT_NE(text("err").find(message), std::string::npos) << text("err");
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "x.exr"));
+  }
+}
+
+}  // namespace
+}  // namespace gonio

@@ -1,0 +1,87 @@
+#include <gonio/tools/render/compare.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include <gonio/mapping/error.h>
+#include <gonio/tools/progress.h>
+#include <gonio/tools/render/compare_runs.h>
+#include <gonio/tools/render/load_scene.h>
+#include <gonio/tools/render/write_compare.h>
+
+namespace gonio {
+namespace {
+
+struct Options {
+  SceneChoice choice;
+  std::vector<std::string> methods;
+  std::filesystem::path out;
+  double reference_seconds = 0;
+  CompareOptions compare;
+};
+
+bool available(const Scene& scene, SamplingMethod method) {
+  return std::all_of(scene.materials.begin(), scene.materials.end(), [&](const Material& m) { return !m.table || MethodBuilder(m.table).available(method); });
+}
+
+std::vector<SamplingMethod> parse_methods(const std::vector<std::string>& names, const Scene& scene) {
+  std::vector<SamplingMethod> methods;
+  if (names.empty())
+    for (const SamplingMethod m : sampling_methods)
+      if (available(scene, m)) methods.push_back(m);
+  for (const std::string& name : names) {
+    const auto method = parse_sampling_method(name);
+    if (!method) throw Error("--methods: found '" + name + "', expected some of " + sampling_method_names());
+    if (!available(scene, *method)) throw Error("--methods: found " + name + ", expected methods that every table of the scene has");
+    if (std::find(methods.begin(), methods.end(), *method) == methods.end()) methods.push_back(*method);
+  }
+  return methods;
+}
+
+void compare(Options& options) {
+  CompareOptions& o = options.compare;
+  if (!(o.seconds > 0)) throw Error("--seconds: found " + std::to_string(o.seconds) + ", expected more than 0");
+  if (!(options.reference_seconds >= 0)) throw Error("--reference-seconds: found " + std::to_string(options.reference_seconds) + ", expected more than 0");
+  o.reference_seconds = options.reference_seconds > 0 ? options.reference_seconds : 16 * o.seconds;
+  const std::string name = std::filesystem::path(options.choice.scene.empty() ? options.choice.material : options.choice.scene).stem().string();
+  Comparison comparison;
+  {
+    ProgressLine line("rendering " + name);
+    const Scene scene = options.choice.load();
+    o.methods = parse_methods(options.methods, scene);
+    comparison = compare_methods(scene, o, [&](double share) { line.update(share); });
+  }
+  write_comparison(options.out, comparison, name, o);
+  for (const CompareRun& run : comparison.runs)
+    std::printf("%-12s %-4s %6d samples  relMSE %.3g\n", to_string(run.method), to_string(run.strategy), run.convergence.back().samples,
+                run.convergence.back().relmse);
+  std::printf("written: %s, compare.md, compare.json and pictures\n", (options.out / "compare.html").string().c_str());
+}
+
+}  // namespace
+
+void add_compare(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* verb = app.add_subcommand("compare", "What sampling methods are worth in a path tracer, at equal time and at equal samples");
+  add_scene_choice(*verb, options->choice);
+  options->choice.size = "128x128";
+  verb->get_option("--size")->capture_default_str();
+  verb->add_option("-o,--output", options->out, "Folder for compare.html, compare.md, compare.json and pictures")->required();
+  verb->add_option("--methods", options->methods, "Sampling methods, separated by commas, of " + sampling_method_names() + "; without it, all")->delimiter(',');
+  verb->add_option("--seconds", options->compare.seconds, "Processor time of each render, all threads together")->capture_default_str();
+  verb->add_option("--reference-seconds", options->reference_seconds, "Processor time of the reference; without it, 16 times that of a render");
+  verb->add_option("--bounces", options->compare.render.max_bounces, "Surfaces after the first one, at most")->capture_default_str();
+  verb->add_option("--seed", options->compare.render.seed, "Seed")->capture_default_str();
+  verb->add_option("--threads", options->compare.render.threads, "Threads, at most one for each core; 0: as many")->capture_default_str();
+  verb->footer(
+      "Examples:\n"
+      "  gonio compare --material satin.bsdf --seconds 10 -o satin\n"
+      "  gonio compare scene.json --methods default,cosine,lobes3 -o car");
+  verb->callback([options] { compare(*options); });
+}
+
+}  // namespace gonio

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <gonio/tools/render/film.h>
+#include <gonio/tools/render/scene.h>
+
+#include <string>
+#include <vector>
+
+namespace gonio {
+
+struct CompareOptions {
+  std::vector<SamplingMethod> methods;
+  double seconds = 10;             ///< processor time of each render, all threads together
+  double reference_seconds = 160;  ///< the same of the reference
+  RenderOptions render;            ///< strategy apart
+};
+
+/// The error of a render after some of its samples.
+struct ConvergencePoint {
+  int samples;
+  double seconds;  ///< processor time
+  double relmse;
+  double standard_error;  ///< of relmse, from its spread over the pixels
+};
+
+/// One method with one strategy.
+struct CompareRun {
+  SamplingMethod method;
+  Strategy strategy;
+  double build_seconds = 0;                   ///< of the samplers, on the wall
+  std::vector<ConvergencePoint> convergence;  ///< at powers of two, and at the end
+  RgbImage image;                             ///< at the end
+};
+
+struct Comparison {
+  std::vector<CompareRun> runs;
+  RgbImage reference;
+  int reference_samples = 0;
+  double reference_relmse = 0;  ///< the reference's own error, known from its two independent halves
+  std::size_t pixels = 0;       ///< those whose centre shows a material with a table: where errors are measured
+  int equal_samples = 0;        ///< the largest power of two that every run has reached
+};
+
+/// Renders the scene with every method (in place of what its tables ask for), with multiple
+/// importance sampling and with material sampling alone, for equal processor time, and measures the
+/// errors against one long render with the default method. Renders take turns, so that whatever else
+/// the machine does meets them alike. The reference's own error is subtracted from all.
+///
+/// Processor time, not that of a clock on the wall: it does not depend on other programs as much.
+/// @throws Error if no pixel shows a table, or a method is not available for one.
+Comparison compare_methods(const Scene& scene, const CompareOptions& options, const Progress& progress = {});
+
+}  // namespace gonio

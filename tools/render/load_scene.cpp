@@ -1,0 +1,31 @@
+#include <gonio/tools/render/load_scene.h>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <tuple>
+
+#include <gonio/mapping/error.h>
+#include <gonio/tools/options.h>
+#include <gonio/tools/render/read_scene.h>
+
+namespace gonio {
+
+Scene SceneChoice::load() const {
+  if (scene.empty() == material.empty())
+    throw Error(std::string("SCENE: found ") + (scene.empty() ? "none" : "one and --material") + ", expected SCENE.json or --material FILE");
+  Scene result = scene.empty() ? make_scene(default_scene(material), "default scene", {}, policies) : read_scene(scene, policies);
+  if (!size.empty()) {
+    std::tie(result.camera.width, result.camera.height) = parse_grid("--size", size);
+    if (result.camera.width > 16384 || result.camera.height > 16384) throw Error("--size: found " + size + ", expected at most 16384x16384");
+  }
+  return result;
+}
+
+void add_scene_choice(CLI::App& verb, SceneChoice& choice) {
+  verb.add_option("SCENE", choice.scene, "Scene file (JSON; docs/render.md)");
+  verb.add_option("--material", choice.material, "Table, stack file or model to show on the default scene");
+  verb.add_option("--size", choice.size, "Pixels, as 512x512, instead of the scene's");
+  add_cell_policies(verb, choice.policies);
+}
+
+}  // namespace gonio

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <CLI/App.hpp>
+#include <string>
+
+#include <gonio/brdf/cells.h>
+#include <gonio/tools/render/scene.h>
+
+namespace gonio {
+
+/// What a verb that renders takes: a scene, or one material for the default scene.
+struct SceneChoice {
+  std::string scene, material, size;
+  CellPolicies policies;
+
+  /// Reads it; samplers are not built. @throws Error if there is none or both, or as read_scene().
+  Scene load() const;
+};
+
+/// SCENE, --material, --size and the policies for cells. `choice` must outlive the parsing.
+void add_scene_choice(CLI::App& verb, SceneChoice& choice);
+
+}  // namespace gonio

@@ -1,0 +1,201 @@
+#include <gonio/tools/render/read_scene.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <map>
+
+#include <gonio/brdf/bytes.h>
+#include <gonio/brdf/exr/stack_file.h>
+#include <gonio/mapping/error.h>
+#include <gonio/mapping/light/exr/light_exr.h>
+#include <gonio/tools/input.h>
+#include <gonio/tools/render/json_fields.h>
+
+namespace gonio {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr float degree = pi<float> / 180;
+
+class SceneReader {
+ public:
+  SceneReader(const nlohmann::json& json, const std::string& where, fs::path folder, const CellPolicies& policies)
+      : fields_(json, where + ":"), folder_(std::move(folder)), policies_(policies) {}
+
+  Scene read() {
+    if (fields_.has("camera")) camera();
+    if (fields_.has("environment")) environment();
+    materials();
+    objects();
+    if (fields_.has("lights")) lights();
+    fields_.finish();
+    return std::move(scene_);
+  }
+
+ private:
+  fs::path file(JsonFields& fields) const { return folder_ / fields.text("file"); }
+
+  void camera() {
+    JsonFields f = fields_.object("camera");
+    Camera& c = scene_.camera;
+    c.position = f.triple("position");
+    c.target = f.triple("target");
+    if (f.has("up")) c.up = f.triple("up");
+    if (f.has("vertical_fov")) c.vertical_fov = degree * static_cast<float>(f.number("vertical_fov", 0.01, 179));
+    if (f.has("resolution")) {
+      const nlohmann::json& r = f.at("resolution");
+      const auto side = [](const nlohmann::json& n) { return n.is_number_integer() && n.get<double>() >= 1 && n.get<double>() <= 16384; };
+      if (!r.is_array() || r.size() != 2 || !side(r[0]) || !side(r[1])) f.fail("resolution", r.dump(), "two whole numbers from 1 to 16384");
+      c.width = r[0].get<int>(), c.height = r[1].get<int>();
+    }
+    f.finish();
+    if (!(glm::length(glm::cross(c.target - c.position, c.up)) > 1e-6f * glm::length(c.target - c.position) * glm::length(c.up)))
+      f.fail("target", "a view along up, or of no length", "another target, or another up");
+  }
+
+  void environment() {
+    JsonFields f = fields_.object("environment");
+    RgbImage image;
+    std::string name = fields_.where("environment");
+    if (f.has("file")) {
+      image = load_rgb(file(f));
+      name = file(f).string();
+    } else if (f.has("sky")) {
+      JsonFields sky = f.object("sky");
+      const glm::vec3 sun = sky.triple("sun");
+      if (!(glm::length(sun) > 0)) sky.fail("sun", "no direction", "a vector towards the sun");
+      const double radius = sky.has("radius") ? sky.number("radius", 0.5, 45) : 2.5, radiance = sky.has("radiance") ? sky.number("radiance", 0) : 300;
+      sky.finish();
+      image = make_sky(glm::normalize(sun), degree * static_cast<float>(radius), static_cast<float>(radiance));
+    } else if (f.has("constant")) {
+      image = {4, 2, std::vector<glm::vec3>(8, f.triple_or_number("constant", 0))};
+    } else {
+      f.fail("file", "none", "file, sky or constant");
+    }
+    const glm::vec3 scale = f.has("scale") ? f.triple_or_number("scale", 0) : glm::vec3(1);
+    for (glm::vec3& p : image.pixels) p *= scale;
+    const float turn = f.has("turn") ? degree * static_cast<float>(f.number("turn")) : 0;
+    f.finish();
+    scene_.environment = std::make_shared<const Environment>(std::move(image), name, turn);
+  }
+
+  void materials() {
+    const nlohmann::json& all = fields_.at("materials");
+    if (!all.is_object()) fields_.fail("materials", all.dump().substr(0, 40), "an object");
+    for (const auto& [name, value] : all.items()) {
+      JsonFields f(value, fields_.where("materials." + name));
+      Material m;
+      m.name = name;
+      if (f.has("albedo") == f.has("file")) f.fail("file", f.has("file") ? "albedo as well" : "none", "file or albedo");
+      if (f.has("albedo")) {
+        m.bsdf = make_bsdf(LambertSampler(f.triple_or_number("albedo", 0, 1)));
+      } else {
+        load(m, f);
+      }
+      if (f.has("two_sided")) m.two_sided = f.boolean("two_sided");
+      f.finish();
+      index_[name] = scene_.materials.size();
+      scene_.materials.push_back(std::move(m));
+    }
+  }
+
+  void load(Material& m, JsonFields& f) {
+    const fs::path path = file(f);
+    if (is_exr(path)) {
+      if (f.has("sampling")) f.fail("sampling", "one", "none: a stack file is sampled by its stack");
+      m.bsdf = make_bsdf(load_compact(path));
+      return;
+    }
+    const bool model = is_model_file(path);
+    if (model) {
+      m.model = load_model(path);
+      m.sampling = m.model->specular_count() > 0 ? SamplingMethod::lobes1 : SamplingMethod::automatic;
+    }
+    m.table = std::make_shared<const BrdfTable>(load_input(path, policies_));
+    if (f.has("sampling")) {
+      const std::string name = f.text("sampling");
+      const auto method = parse_sampling_method(name);
+      if (!method) f.fail("sampling", "'" + name + "'", "one of " + sampling_method_names());
+      m.sampling = *method;
+      if (!MethodBuilder(m.table).available(m.sampling)) f.fail("sampling", "rgl", "a method for a " + m.table->info().format + " file");
+    }
+  }
+
+  static glm::mat4 placement(JsonFields& f, bool scaled) {
+    glm::mat4 m(1.0f);
+    if (f.has("translate") && scaled) m = glm::translate(m, f.triple("translate"));
+    if (f.has("rotate")) {
+      const glm::vec3 angles = f.triple("rotate") * degree;
+      m = glm::rotate(m, angles.z, glm::vec3(0, 0, 1));
+      m = glm::rotate(m, angles.y, glm::vec3(0, 1, 0));
+      m = glm::rotate(m, angles.x, glm::vec3(1, 0, 0));
+    }
+    if (f.has("scale") && scaled) {
+      const glm::vec3 scale = f.triple_or_number("scale");
+      if (scale.x * scale.y * scale.z == 0.0f) f.fail("scale", "0", "another number");
+      m = glm::scale(m, scale);
+    }
+    return m;
+  }
+
+  void objects() {
+    const nlohmann::json& all = fields_.at("objects");
+    if (!all.is_array() || all.empty()) fields_.fail("objects", all.dump().substr(0, 40), "an array of objects");
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      JsonFields f(all[k], fields_.where("objects[" + std::to_string(k) + "]"));
+      Object object;
+      if (f.has("shape") == f.has("file")) f.fail("shape", f.has("shape") ? "file as well" : "none", "shape or file");
+      object.mesh = f.has("shape") ? make_shape(f.text("shape"), f.where("shape")) : load_mesh(file(f));
+      transform(object.mesh, placement(f, true));
+      const std::string material = f.text("material");
+      const auto found = index_.find(material);
+      if (found == index_.end()) f.fail("material", "'" + material + "'", "the name of one of the materials");
+      object.material = found->second;
+      if (f.has("emission")) object.emission = f.triple_or_number("emission", 0);
+      f.finish();
+      scene_.objects.push_back(std::move(object));
+    }
+  }
+
+  void lights() {
+    const nlohmann::json& all = fields_.at("lights");
+    if (!all.is_array()) fields_.fail("lights", all.dump().substr(0, 40), "an array of objects");
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      JsonFields f(all[k], fields_.where("lights[" + std::to_string(k) + "]"));
+      GoniometricLight light;
+      Deviations deviations;
+      light.emission = std::make_shared<const EmissionSampler<float>>(load_any_light(file(f), {}, deviations).diagram);
+      light.position = f.triple("position");
+      light.to_light = glm::transpose(glm::mat3(placement(f, false)));
+      light.scale = f.has("scale") ? f.triple_or_number("scale", 0) : glm::vec3(1);
+      f.finish();
+      scene_.lights.push_back(std::move(light));
+    }
+  }
+
+  JsonFields fields_;
+  fs::path folder_;
+  const CellPolicies& policies_;
+  std::map<std::string, std::size_t> index_;
+  Scene scene_;
+};
+
+}  // namespace
+
+Scene make_scene(const nlohmann::json& json, const std::string& where, const fs::path& folder, const CellPolicies& policies) {
+  return SceneReader(json, where, folder, policies).read();
+}
+
+Scene read_scene(const fs::path& path, const CellPolicies& policies) {
+  nlohmann::json json;
+  try {
+    json = nlohmann::json::parse(read_bytes(path));
+  } catch (const nlohmann::json::exception& e) {
+    throw Error(path.string() + ": found no valid JSON, expected a scene: " + e.what());
+  }
+  return make_scene(json, path.string(), path.parent_path(), policies);
+}
+
+}  // namespace gonio

@@ -1,0 +1,121 @@
+#include <gonio/tools/render/render.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include <gonio/mapping/atomic_file.h>
+#include <gonio/mapping/error.h>
+#include <gonio/tools/options.h>
+#include <gonio/tools/progress.h>
+#include <gonio/tools/render/film.h>
+#include <gonio/tools/render/load_scene.h>
+#include <gonio/tools/render/tone_map.h>
+
+namespace gonio {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  SceneChoice choice;
+  std::string sampling;
+  fs::path out = "render.exr";
+  int samples = 64;
+  double seconds = 0;
+  float exposure = 1;
+  RenderOptions render;
+};
+
+class Clock {
+ public:
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+Scene load(const Options& options) {
+  Scene scene = options.choice.load();
+  if (!options.sampling.empty()) {
+    const auto method = parse_sampling_method(options.sampling);
+    if (!method) throw Error("--sampling: found '" + options.sampling + "', expected one of " + sampling_method_names());
+    for (Material& m : scene.materials)
+      if (m.table) m.sampling = *method;
+  }
+  return scene;
+}
+
+void save(const Options& options, const std::string& extension, const Film& film) {
+  const RgbImage radiance = film.radiance();
+  if (extension == ".png") {
+    const std::string bytes = tone_mapped_png(radiance, options.exposure);
+    write_stream_atomically(options.out, [&](std::ostream& out) { out << bytes; });
+    return;
+  }
+  const RgbImage albedo = film.albedo(), normal = film.normal(), variance = film.variance();
+  const std::vector<std::string> rgb{"R", "G", "B"};
+  save_layers(options.out, {{"", rgb, &radiance}, {"albedo.", rgb, &albedo}, {"normal.", {"X", "Y", "Z"}, &normal}, {"variance.", rgb, &variance}});
+}
+
+void render(const Options& options) {
+  const std::string extension = checked_extension(options.out, {".exr", ".png"});
+  if (options.samples < 1 || options.samples > (1 << 24)) throw Error("--samples: found " + std::to_string(options.samples) + ", expected 1 to 16777216");
+  if (!(options.seconds >= 0)) throw Error("--seconds: found " + std::to_string(options.seconds) + ", expected a number from 0");
+  if (options.render.max_bounces < 0) throw Error("--bounces: found " + std::to_string(options.render.max_bounces) + ", expected a number from 0");
+  if (options.render.threads < 0) throw Error("--threads: found " + std::to_string(options.render.threads) + ", expected a number from 0");
+  const Clock preparing;
+  Scene scene = [&] {
+    const ProgressLine line("reading the scene");
+    return load(options);
+  }();
+  {
+    ProgressLine line("building the samplers");
+    build_materials(scene, [&](double share) { line.update(share); });
+  }
+  Film film(scene, options.render);
+  const double prepared = preparing.seconds();
+  const Clock clock;
+  {
+    ProgressLine line("rendering " + options.out.string());
+    if (options.seconds > 0) {
+      // One sample at a time: the time that one takes tells whether another fits.
+      while (film.samples() == 0 || clock.seconds() * (film.samples() + 1) / film.samples() <= options.seconds) {
+        film.add_samples(1);
+        line.update(clock.seconds() / options.seconds);
+      }
+    } else {
+      film.add_samples(options.samples, [&](double share) { line.update(share); });
+    }
+  }
+  save(options, extension, film);
+  std::printf("%d x %d pixels, %d samples each: %.1f s, after %.1f s for scene and samplers\n", scene.camera.width, scene.camera.height, film.samples(),
+              clock.seconds(), prepared);
+}
+
+}  // namespace
+
+void add_render(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* verb = app.add_subcommand("render", "A picture of a scene, or of one material, by path tracing");
+  add_scene_choice(*verb, options->choice);
+  verb->add_option("-o,--output", options->out, "OpenEXR image with albedo, normal and variance, or tone-mapped .png")->capture_default_str();
+  verb->add_option("--samples", options->samples, "Paths a pixel")->capture_default_str();
+  verb->add_option("--seconds", options->seconds, "Time for rendering, instead of a number of samples");
+  verb->add_option("--sampling", options->sampling, "Sampling method of all tables, instead of the scene's: " + sampling_method_names());
+  verb->add_option("--bounces", options->render.max_bounces, "Surfaces after the first one, at most")->capture_default_str();
+  verb->add_option("--exposure", options->exposure, "Factor of radiances in a .png")->capture_default_str();
+  verb->add_option("--seed", options->render.seed, "Seed; the same one gives the same picture")->capture_default_str();
+  verb->add_option("--threads", options->render.threads, "Threads, at most one for each core; 0: as many")->capture_default_str();
+  verb->footer(
+      "Examples:\n"
+      "  gonio render --material satin.bsdf -o satin.png\n"
+      "  gonio render --material satin.bsdf --sampling cosine -o noisy.png\n"
+      "  gonio render scene.json -o picture.exr --samples 1024");
+  verb->callback([options] { render(*options); });
+}
+
+}  // namespace gonio

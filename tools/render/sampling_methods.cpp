@@ -1,0 +1,71 @@
+#include <gonio/tools/render/sampling_methods.h>
+
+#include <algorithm>
+#include <utility>
+
+#include <gonio/brdf/baseline.h>
+#include <gonio/fitting/lobe_sampler.h>
+#include <gonio/mapping/error.h>
+#include <gonio/tools/table_fits.h>
+
+namespace gonio {
+
+const char* to_string(SamplingMethod method) noexcept {
+  static constexpr const char* names[] = {"default", "cosine", "lobes1", "lobes2", "lobes3", "nearest", "mixture", "displacement", "half", "rgl"};
+  return names[static_cast<std::size_t>(method)];
+}
+
+std::optional<SamplingMethod> parse_sampling_method(const std::string& name) noexcept {
+  for (const SamplingMethod method : sampling_methods)
+    if (name == to_string(method)) return method;
+  return std::nullopt;
+}
+
+std::string sampling_method_names() {
+  std::string names;
+  for (const SamplingMethod method : sampling_methods) names += (names.empty() ? "" : ", ") + std::string(to_string(method));
+  return names;
+}
+
+MethodBuilder::MethodBuilder(std::shared_ptr<const BrdfTable> table, std::optional<LobeModel> model, const StackOptions& options)
+    : table_(std::move(table)), options_(options), given_(model.has_value()) {
+  if (model) fits_.push_back(std::move(*model));
+}
+
+bool MethodBuilder::available(SamplingMethod method) const noexcept {
+  return method != SamplingMethod::rgl || std::holds_alternative<RglTable>(table_->data());
+}
+
+const LobeModel& MethodBuilder::lobes(std::size_t count) {
+  if (fits_.empty())
+    for (StageFit& stage : fit_table(*table_, parse_model(default_fit_form)).stages) fits_.push_back(std::move(stage.fit.model));
+  return fits_[given_ ? 0 : std::min(count, fits_.size()) - 1];
+}
+
+const StackGrid& MethodBuilder::outgoing(const Progress& progress) {
+  if (!outgoing_) outgoing_ = build_stack(*table_, options_, progress);
+  return *outgoing_;
+}
+
+std::shared_ptr<const Bsdf> MethodBuilder::build(SamplingMethod method, const Progress& progress) {
+  switch (method) {
+    case SamplingMethod::automatic: return make_bsdf(Sampler(table_, StackOptions{}, progress));
+    case SamplingMethod::cosine: return make_bsdf(CosineSampler(table_));
+    case SamplingMethod::lobes1: return make_bsdf(LobeSampler(table_, lobes(1)));
+    case SamplingMethod::lobes2: return make_bsdf(LobeSampler(table_, lobes(2)));
+    case SamplingMethod::lobes3: return make_bsdf(LobeSampler(table_, lobes(3)));
+    case SamplingMethod::nearest: return make_bsdf(Sampler(table_, outgoing(progress), Interpolation::nearest));
+    case SamplingMethod::mixture: return make_bsdf(Sampler(table_, outgoing(progress), Interpolation::mixture));
+    case SamplingMethod::displacement: return make_bsdf(Sampler(table_, outgoing(progress), Interpolation::displacement));
+    case SamplingMethod::half: {
+      StackOptions options = options_;
+      options.chart = Chart::half;
+      options.interpolation = Interpolation::blend;
+      return make_bsdf(Sampler(table_, build_stack(*table_, options, progress), Interpolation::blend));
+    }
+    case SamplingMethod::rgl: return make_bsdf(RglSampler(table_));
+  }
+  throw Error("sampling: found none, expected one of " + sampling_method_names());
+}
+
+}  // namespace gonio

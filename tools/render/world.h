@@ -1,0 +1,43 @@
+#pragma once
+
+#include <gonio/tools/render/scene.h>
+
+#include <memory>
+#include <optional>
+
+namespace gonio {
+
+/// Where a ray meets a surface.
+struct Hit {
+  glm::vec3 position, normal;  ///< normal: of the triangle, to the outside, unit
+  glm::vec3 shading_normal;    ///< interpolated, unit, on the side of `normal`
+  std::size_t object, triangle;
+  float distance;
+};
+
+/// The scene's triangles in Embree. Thread safety: immutable; concurrent use is safe.
+class World {
+ public:
+  /// Keeps a reference to the scene. @throws Error if Embree fails.
+  explicit World(const Scene& scene);
+  ~World();
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+
+  /// @param direction unit
+  std::optional<Hit> intersect(const glm::vec3& origin, const glm::vec3& direction) const noexcept;
+  bool occluded(const glm::vec3& origin, const glm::vec3& direction, float distance) const noexcept;
+
+  /// The point moved off its surface to the side of `direction`, far enough not to meet it again.
+  static glm::vec3 off_surface(const Hit& hit, const glm::vec3& direction) noexcept;
+
+  float radius() const noexcept { return radius_; }  ///< of a sphere round all triangles
+
+ private:
+  struct Embree;
+  const Scene& scene_;
+  std::unique_ptr<Embree> embree_;
+  float radius_;
+};
+
+}  // namespace gonio
