@@ -49,5 +49,20 @@ TEST(Spectrum, BandsHaveTheirColour) {
   EXPECT_TRUE(red.r > red.g && red.r > red.b);
 }
 
+TEST(Spectrum, ColoursAsReflectancesComeBack) {
+  const RgbSpectra spectra = rgb_spectra();
+  const std::vector<glm::vec3> weights = rec709_weights(spectra.wavelengths);
+  ASSERT_EQ(spectra.reflectance.size(), weights.size());
+  for (int primary = 0; primary < 3; ++primary) {
+    glm::vec3 rgb(0.0f);
+    for (std::size_t k = 0; k < weights.size(); ++k) rgb += weights[k] * spectra.reflectance[k][primary];
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(rgb[c], c == primary ? 1.0f : 0.0f, 2e-5f);
+  }
+  for (const glm::vec3& r : spectra.reflectance) {
+    EXPECT_NEAR(r.r + r.g + r.b, 1.0f, 1e-6f);
+    for (int c = 0; c < 3; ++c) EXPECT_TRUE(r[c] >= 0.0f && r[c] <= 1.0f);
+  }
+}
+
 }  // namespace
 }  // namespace gonio

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <gonio/brdf/material_hints.h>
+#include <gonio/brdf/sampler.h>
+
+#include <cmath>
+#include <memory>
+
+#include "mitsuba_interface.h"  // in Mitsuba: <mitsuba/render/bsdf.h>
+
+// A material of gonio as a BSDF of Mitsuba 3 (scalar variants). Directions have the same names: wi is
+// known, wo drawn. Values contain the cosine.
+class GonioBSDF final : public mitsuba::BSDF {
+ public:
+  GonioBSDF(std::shared_ptr<const gonio::Sampler> sampler, bool two_sided)
+      : sampler_(std::move(sampler)), hints_(gonio::MaterialHints::of(*sampler_)), two_sided_(two_sided) {
+    m_flags = mitsuba::GlossyReflection | mitsuba::FrontSide | (two_sided ? mitsuba::BackSide : 0u);
+  }
+
+  std::pair<mitsuba::BSDFSample, mitsuba::Spectrum> sample(
+      const mitsuba::SurfaceInteraction& si, mitsuba::Float,
+      const mitsuba::Point2f& u) const override {
+    const bool below = si.wi.z < 0;
+    if (below && !two_sided_) return {};
+    const auto s = sampler_->sample(up(si.wi, below), {u.x, u.y});
+    if (!s) return {};  // weight and pdf 0: the path ends
+    const float sign = below ? -1.0f : 1.0f;
+    mitsuba::BSDFSample bs;
+    bs.wo = {sign * s->wo.x, sign * s->wo.y, sign * s->wo.z};
+    bs.pdf = s->pdf;
+    bs.sampled_type = mitsuba::GlossyReflection;
+    return {bs, spectrum(s->weight)};
+  }
+
+  mitsuba::Spectrum eval(const mitsuba::SurfaceInteraction& si,
+                         const mitsuba::Vector3f& wo) const override {
+    const bool below = si.wi.z < 0;
+    if (below && !two_sided_) return {};
+    return spectrum(sampler_->eval(up(si.wi, below), up(wo, below)) * std::abs(wo.z));
+  }
+
+  mitsuba::Float pdf(const mitsuba::SurfaceInteraction& si,
+                     const mitsuba::Vector3f& wo) const override {
+    const bool below = si.wi.z < 0;
+    return below && !two_sided_ ? 0.0f : sampler_->pdf(up(si.wi, below), up(wo, below));
+  }
+
+  // What Mitsuba's integrators write as albedo: all that is reflected, not the diffuse part alone.
+  mitsuba::Spectrum eval_diffuse_reflectance(const mitsuba::SurfaceInteraction& si) const override {
+    if (si.wi.z < 0 && !two_sided_) return {};
+    return spectrum(hints_.albedo(std::acos(std::fmin(std::abs(si.wi.z), 1.0f))));
+  }
+
+  mitsuba::Float roughness() const { return hints_.roughness(); }  // as alpha
+
+ private:
+  static glm::vec3 up(const mitsuba::Vector3f& w, bool below) {
+    return below ? glm::vec3(-w.x, -w.y, -w.z) : glm::vec3(w.x, w.y, w.z);
+  }
+  static mitsuba::Spectrum spectrum(const glm::vec3& rgb) { return {{rgb.r, rgb.g, rgb.b}}; }
+
+  std::shared_ptr<const gonio::Sampler> sampler_;
+  gonio::MaterialHints hints_;
+  bool two_sided_;
+};

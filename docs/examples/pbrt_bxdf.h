@@ -1,0 +1,62 @@
+#pragma once
+
+#include <gonio/brdf/material_hints.h>
+#include <gonio/brdf/sampler.h>
+
+#include <cmath>
+#include <memory>
+
+#include "pbrt_interface.h"  // in pbrt: <pbrt/base/bxdf.h>
+
+// A material of gonio as a BxDF of pbrt-v4. There, wo is the known direction and wi the drawn one:
+// the other way round than in gonio.
+class GonioBxDF {
+ public:
+  explicit GonioBxDF(std::shared_ptr<const gonio::Sampler> sampler)
+      : sampler_(std::move(sampler)), hints_(gonio::MaterialHints::of(*sampler_)) {}
+
+  pbrt::BxDFFlags Flags() const { return pbrt::BxDFFlags::GlossyReflection; }
+
+  // Two-sided: below the surface both directions are turned over. Nothing is transmitted.
+  pbrt::SampledSpectrum f(pbrt::Vector3f wo, pbrt::Vector3f wi, pbrt::TransportMode) const {
+    return spectrum(sampler_->eval(up(wo, wo), up(wi, wo)));  // 0 if one is below
+  }
+
+  std::optional<pbrt::BSDFSample> Sample_f(
+      pbrt::Vector3f wo, pbrt::Float, pbrt::Point2f u, pbrt::TransportMode,
+      pbrt::BxDFReflTransFlags what = pbrt::BxDFReflTransFlags::All) const {
+    if (!reflects(what)) return {};
+    const auto s = sampler_->sample(up(wo, wo), {u.x, u.y});
+    if (!s) return {};
+    const pbrt::Vector3f wi{s->wo.x, s->wo.y, s->wo.z};
+    return pbrt::BSDFSample{spectrum(s->weight * s->pdf / s->wo.z), wo.z < 0 ? -wi : wi, s->pdf,
+                            pbrt::BxDFFlags::GlossyReflection};
+  }
+
+  pbrt::Float PDF(pbrt::Vector3f wo, pbrt::Vector3f wi, pbrt::TransportMode,
+                  pbrt::BxDFReflTransFlags what = pbrt::BxDFReflTransFlags::All) const {
+    return reflects(what) ? sampler_->pdf(up(wo, wo), up(wi, wo)) : 0;
+  }
+
+  // Without random numbers, where pbrt averages draws.
+  pbrt::SampledSpectrum rho(pbrt::Vector3f wo) const {
+    return spectrum(hints_.albedo(std::acos(std::fmin(pbrt::AbsCosTheta(wo), 1.0f))));
+  }
+
+  pbrt::Float Roughness() const { return hints_.roughness(); }  // as alpha
+  void Regularize() {}  // measured: wider lobes would be another material
+
+ private:
+  static bool reflects(pbrt::BxDFReflTransFlags what) {
+    return (static_cast<int>(what) & static_cast<int>(pbrt::BxDFReflTransFlags::Reflection)) != 0;
+  }
+  // `w` mirrored to the side that `known` is above.
+  static glm::vec3 up(pbrt::Vector3f w, pbrt::Vector3f known) {
+    return known.z < 0 ? glm::vec3(-w.x, -w.y, -w.z) : glm::vec3(w.x, w.y, w.z);
+  }
+  // In pbrt: RGBAlbedoSpectrum or, where f_r is above 1, RGBUnboundedSpectrum at the wavelengths.
+  static pbrt::SampledSpectrum spectrum(const glm::vec3& rgb) { return {{rgb.r, rgb.g, rgb.b}}; }
+
+  std::shared_ptr<const gonio::Sampler> sampler_;
+  gonio::MaterialHints hints_;
+};

@@ -1,0 +1,148 @@
+// The adapters that docs/integrate.md shows, as the renderers would call them.
+
+#include <gonio/brdf/albedo.h>
+#include <gonio/brdf/material_hints.h>
+#include <gonio/docs/examples/mitsuba_bsdf.h>
+#include <gonio/docs/examples/pbrt_bxdf.h>
+#include <gonio/fitting/synth.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace gonio {
+namespace {
+
+std::shared_ptr<const BrdfTable> table_of(const char* description) {
+  return std::make_shared<const BrdfTable>(GridTable(synthesize_grid(parse_model(description), 32, 48)), BrdfTable::Info{});
+}
+
+std::shared_ptr<const Sampler> sampler_of(const char* description) {
+  StackOptions options;
+  options.incident = 24;
+  options.meridians = options.parallels = 24;
+  return std::make_shared<const Sampler>(table_of(description), options);
+}
+
+/// Coloured, and built once.
+std::shared_ptr<const Sampler> material() {
+  static const auto sampler = sampler_of("ggx:alpha=0.3,F0=0.4/0.3/0.2+lambert:albedo=0.3/0.2/0.1");
+  return sampler;
+}
+
+struct Direction {
+  float x, y, z;
+};
+
+/// Uniform on the hemisphere above or below.
+Direction random_direction(std::mt19937& engine, bool below) {
+  std::uniform_real_distribution<float> uniform;
+  const float z = uniform(engine), phi = 2 * pi<float> * uniform(engine), r = std::sqrt(1 - z * z);
+  return {r * std::cos(phi), r * std::sin(phi), below ? -z : z};
+}
+
+TEST(Integrate, PbrtDrawsAndValuesAgree) {
+  const GonioBxDF bxdf(material());
+  const auto mode = pbrt::TransportMode::Radiance;
+  std::mt19937 engine(5);
+  std::uniform_real_distribution<float> uniform;
+  int drawn = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const Direction d = random_direction(engine, k % 2 == 1);
+    const pbrt::Vector3f wo{d.x, d.y, d.z};
+    const auto s = bxdf.Sample_f(wo, 0, {uniform(engine), uniform(engine)}, mode);
+    if (!s) continue;
+    ++drawn;
+    EXPECT_GT(s->wi.z * wo.z, 0) << "reflection stays on the side of wo";
+    const pbrt::SampledSpectrum f = bxdf.f(wo, s->wi, mode);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(s->f[c] / f[c], 1, 1e-2) << d.z;
+    EXPECT_NEAR(bxdf.PDF(wo, s->wi, mode) / s->pdf, 1, 1e-2);
+    // The same material from below, and nothing through it.
+    const pbrt::SampledSpectrum mirrored = bxdf.f(-wo, -s->wi, mode);
+    for (int c = 0; c < 3; ++c) EXPECT_EQ(mirrored[c], f[c]);
+    EXPECT_EQ(bxdf.PDF(-wo, -s->wi, mode), bxdf.PDF(wo, s->wi, mode));
+    EXPECT_EQ(bxdf.f(wo, -s->wi, mode)[0], 0);
+    EXPECT_EQ(bxdf.PDF(wo, -s->wi, mode), 0);
+  }
+  EXPECT_GT(drawn, 1900);
+  const auto transmission = pbrt::BxDFReflTransFlags::Transmission;
+  EXPECT_FALSE(bxdf.Sample_f({0, 0, 1}, 0, {0.5f, 0.5f}, mode, transmission));
+  EXPECT_EQ(bxdf.PDF({0, 0, 1}, {0, 0, 1}, mode, transmission), 0);
+  EXPECT_FALSE(bxdf.Sample_f({1, 0, 0}, 0, {0.5f, 0.5f}, mode)) << "on the horizon";
+}
+
+TEST(Integrate, MitsubaDrawsAndValuesAgree) {
+  const GonioBSDF one_sided(material(), false), two_sided(material(), true);
+  EXPECT_EQ(one_sided.flags() & mitsuba::BackSide, 0u);
+  EXPECT_NE(two_sided.flags() & mitsuba::BackSide, 0u);
+  std::mt19937 engine(6);
+  std::uniform_real_distribution<float> uniform;
+  for (int k = 0; k < 2000; ++k) {
+    const bool below = k % 2 == 1;
+    const Direction d = random_direction(engine, below);
+    const mitsuba::SurfaceInteraction si{{d.x, d.y, d.z}};
+    const mitsuba::Point2f u{uniform(engine), uniform(engine)};
+    const auto [s, weight] = two_sided.sample(si, 0, u);
+    if (s.pdf == 0) continue;
+    EXPECT_GT(s.wo.z * si.wi.z, 0);
+    const mitsuba::Spectrum value = two_sided.eval(si, s.wo);
+    const float pdf = two_sided.pdf(si, s.wo);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(weight[c] * pdf / value[c], 1, 1e-2);
+    EXPECT_NEAR(pdf / s.pdf, 1, 1e-2);
+    const mitsuba::Vector3f through{s.wo.x, s.wo.y, -s.wo.z};
+    EXPECT_EQ(two_sided.eval(si, through)[1], 0);
+    EXPECT_EQ(two_sided.pdf(si, through), 0);
+    // From behind, the one-sided material is black and draws nothing.
+    EXPECT_EQ(one_sided.sample(si, 0, u).first.pdf, below ? 0 : s.pdf);
+    EXPECT_EQ(one_sided.eval(si, s.wo)[0], below ? 0 : value[0]);
+    EXPECT_EQ(one_sided.pdf(si, s.wo), below ? 0 : pdf);
+    if (below) {
+      EXPECT_EQ(one_sided.eval_diffuse_reflectance(si)[0], 0);
+    }
+  }
+}
+
+TEST(Integrate, AlbedoIsTheMeanWeight) {
+  const GonioBxDF pbrt_side(material());
+  const GonioBSDF mitsuba_side(material(), true);
+  std::mt19937 engine(7);
+  std::uniform_real_distribution<float> uniform;
+  for (const float theta : {0.1f, 0.75f, 1.3f}) {
+    for (const float side : {1.0f, -1.0f}) {
+      const pbrt::Vector3f wo{std::sin(theta), 0, side * std::cos(theta)};
+      const mitsuba::SurfaceInteraction si{{wo.x, wo.y, wo.z}};
+      double f_sum = 0, weight_sum = 0;
+      constexpr int n = 20000;
+      for (int k = 0; k < n; ++k) {
+        const float u = uniform(engine), v = uniform(engine);
+        if (const auto s = pbrt_side.Sample_f(wo, 0, {u, v}, pbrt::TransportMode::Radiance))
+          f_sum += s->f[0] * pbrt::AbsCosTheta(s->wi) / s->pdf;
+        weight_sum += mitsuba_side.sample(si, 0, {u, v}).second[0];
+      }
+      EXPECT_NEAR(f_sum / n / pbrt_side.rho(wo)[0], 1, 0.01) << theta;
+      EXPECT_NEAR(weight_sum / n / mitsuba_side.eval_diffuse_reflectance(si)[0], 1, 0.01) << theta;
+    }
+  }
+}
+
+TEST(MaterialHints, AlbedoOfTheTable) {
+  const MaterialHints hints = MaterialHints::of(*material());
+  const auto table = table_of("ggx:alpha=0.3,F0=0.4/0.3/0.2+lambert:albedo=0.3/0.2/0.1");
+  for (const float degrees : {0.0f, 13.0f, 40.0f, 65.0f, 80.0f}) {
+    const float theta = degrees * pi<float> / 180;
+    const glm::vec3 expected = directional_albedo(*table, theta), found = hints.albedo(theta);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c] / expected[c], 1, 0.01) << degrees;
+  }
+  EXPECT_EQ(hints.albedo(1.6f), glm::vec3(0.0f));
+  EXPECT_EQ(hints.albedo(-0.1f), hints.albedo(0.0f));
+}
+
+TEST(MaterialHints, RoughnessOfKnownLobes) {
+  EXPECT_NEAR(MaterialHints::of(*sampler_of("lambert:albedo=0.5")).roughness(), std::tan(pi<float> / 8), 0.02);
+  const float rough = MaterialHints::of(*sampler_of("ggx:alpha=0.4,F0=1")).roughness();
+  const float glossy = MaterialHints::of(*sampler_of("ggx:alpha=0.15,F0=1")).roughness();
+  EXPECT_NEAR(rough, 0.32, 0.02);
+  EXPECT_NEAR(glossy, 0.15, 0.02);
+}
+
+}  // namespace
+}  // namespace gonio
