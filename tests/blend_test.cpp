@@ -9,7 +9,7 @@
 #include <set>
 #include <string>
 
-#include <gonio/brdf/choose_stack.h>
+#include <gonio/brdf/compact_bsdf.h>
 #include <gonio/brdf/proof/gallery.h>
 #include <gonio/brdf/sampler.h>
 #include <gonio/mapping/error.h>
@@ -155,24 +155,15 @@ TEST(HalfVectorStack, SelfContainedAgreesWithItself) {
   options.interpolation = Interpolation::blend;
   options.bytes = 32 * 1024;
   const StackGrid grid = build_stack(*table, options);
-  const Sampler sampler(grid, Colour::from_table(*table, Stack<float>(grid, Interpolation::blend), 16), Interpolation::blend);
+  const Stack<float> stack(grid, Interpolation::blend);
+  const CompactBsdf sampler(grid, Interpolation::blend, Storage::float32,
+                            Colour::from_table(*table, direction_map(stack), stack.theta_i(), 16));
   proof::InvariantOptions invariants = invariant_options();
   // Towards the horizon the density falls to 0 in the last ulps of r, and its relative error rises.
   invariants.density_floor = 1e-2;
   invariants.weight_bound = 1e-3;
   for (const double theta_i : {0.3, 0.9})
     EXPECT_THAT_SAMPLER_INVARIANTS_HOLD(proof::subject_of(sampler), theta_i, invariants);
-}
-
-TEST(ChooseStack, PutsTheBetterFirst) {
-  const BrdfTable table = to_table(gallery_table("asymmetric"));
-  StackOptions good, bad;
-  good.bytes = bad.bytes = 64 * 1024;
-  bad.meridians = bad.parallels = 3;
-  const auto rated = choose_stack(table, {bad, good});
-  ASSERT_EQ(rated.size(), 2u);
-  EXPECT_LT(rated[0].relvar, rated[1].relvar);
-  EXPECT_EQ(rated[0].relvar, rate_stack(table, Stack<float>(build_stack(table, good), good.interpolation)));
 }
 
 }  // namespace

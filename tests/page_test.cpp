@@ -61,6 +61,7 @@ class PageTest : public testing::Test {
     if (std::system("command -v chromium > /dev/null") != 0) GTEST_SKIP() << "needs chromium, which is not installed";
     directory_ = std::filesystem::temp_directory_path() / ("gonio_page_" + std::to_string(getpid()));
     std::filesystem::create_directories(directory_ / "profile");
+    std::filesystem::create_directories(GONIO_PAGE_PICTURES);
     browser_ = std::make_unique<Chromium>(directory_ / "profile");
   }
   void TearDown() override {
@@ -95,9 +96,9 @@ class PageTest : public testing::Test {
   }
   void click(const std::string& selector) { browser_->evaluate("document.querySelector(" + json(selector).dump() + ").click()"); }
 
-  void size(int width, int height, bool dark) {
+  void size(int width, int height, bool dark, bool print = false) {
     browser_->call("Emulation.setDeviceMetricsOverride", {{"width", width}, {"height", height}, {"deviceScaleFactor", 1}, {"mobile", width < 500}});
-    browser_->call("Emulation.setEmulatedMedia", {{"features", {{{"name", "prefers-color-scheme"}, {"value", dark ? "dark" : "light"}}}}});
+    browser_->call("Emulation.setEmulatedMedia", {{"media", print ? "print" : "screen"}, {"features", {{{"name", "prefers-color-scheme"}, {"value", dark ? "dark" : "light"}}}}});
   }
 
   void expect_clean() {
@@ -143,7 +144,7 @@ TEST_F(PageTest, ComplaintsAndRequestsAreNoticed) {
 TEST_F(PageTest, ControlsWork) {
   open(example());
   size(1200, 6000, false);
-  ASSERT_TRUE(browser_->wait_for("document.querySelectorAll('#material-0 .chart svg').length === 7"));
+  ASSERT_TRUE(browser_->wait_for("document.querySelectorAll('#material-0 .chart svg').length === document.querySelectorAll('#material-0 .chart').length"));
   const auto drawing = [&](const std::string& chart) {
     return browser_->evaluate("document.querySelector('section:not([hidden]) [data-chart=" + chart + "] .chart').innerHTML").get<std::string>();
   };
@@ -179,7 +180,7 @@ TEST_F(PageTest, ControlsWork) {
 TEST_F(PageTest, ChartsAreSavedAsFiles) {
   open(example());
   size(1200, 6000, false);
-  ASSERT_TRUE(browser_->wait_for("document.querySelectorAll('#material-0 .chart svg').length === 7"));
+  ASSERT_TRUE(browser_->wait_for("document.querySelectorAll('#material-0 .chart svg').length === document.querySelectorAll('#material-0 .chart').length"));
   // A link that would be followed is kept instead.
   browser_->evaluate("window.saved = []; HTMLAnchorElement.prototype.click = function () { saved.push([this.download, this.href.slice(0, 14)]); }");
   const int buttons = count("#material-0 [data-save]");
@@ -223,32 +224,117 @@ TEST_F(PageTest, ReportsWithoutCurvesOrMaterialsAreShown) {
 
   json lights = example();
   lights["materials"] = json::array();
-  lights["lights"] = {{{"name", "lamp"}, {"source", "lamp.ies"}, {"format", "ies"}, {"flux", 1000}, {"methods", {{{"method", "table"}, {"flux", 1001}, {"relvar", 0.1}, {"ns", 30}}}}}};
+  lights["lights"] = {{{"name", "lamp"}, {"source", "lamp.ies"}, {"format", "ies"}, {"flux", 1000}, {"methods", {{{"id", "texels"}, {"flux", 1001}, {"relvar", 0.1}, {"ns", {{"sample", 30}}}}}}}};
   open(lights, "document.querySelector('#lights td')");
   EXPECT_EQ(text("#lights h2"), "lamp");
+  EXPECT_EQ(text("#lights tbody tr"), "texels10010.130");
   EXPECT_EQ(count("#controls:not([hidden])"), 0);
   expect_clean();
 }
 
+/// What a report need not hold: an error for each size of stack, fits, times of batches, provenance, the
+/// study of textbook formulas.
+json full_example() {
+  json report = example();
+  report["command"] = "gonio report 'a b.bsdf' -o <out>";
+  report["seeds"] = {{"measures", 1}, {"times", 7}};
+  json& first = report["materials"][0];
+  first["sha256"] = "0123abcd";
+  for (json& m : first["methods"])
+    if (m["chart"] != "none") m["ns"]["sample_batch"] = 31.25;
+  for (const int kib : {1, 4, 16, 64})
+    first["front"].push_back({{"id", "compact"}, {"bytes", 1024 * kib}, {"ns", 300}, {"relvar", 0.1 / kib}, {"eval_error", kib < 64 ? json(0.2 / kib) : json()}, {"chosen", kib == 16}});
+  first["front"].push_back({{"id", "displacement/outgoing"}, {"bytes", 20000}, {"ns", 250}, {"relvar", 0.02}, {"eval_error", nullptr}, {"chosen", false}});
+  json curves = json::array();
+  for (const json& c : first["curves"]) curves.push_back({{"theta_i_deg", c["theta_i_deg"]}, {"model", c["table"]}});
+  const json errors = {{"cosine_rms", 1}, {"log_rms", 1}, {"relative_l1", 1}, {"albedo", 1}, {"delta_e_2000", 1}};
+  first["fits"] = {{{"model", "lambert:albedo=0.5"}, {"errors", {{"inside_cutoff", errors}, {"beyond_cutoff", errors}}}, {"curves", curves}}};
+  first["methods"].push_back(method("lobes1", "none", 120, 30));
+  for (const std::string variant : {"cardan", "gonio-diagram"})
+    for (const std::string input : {"constant", "spike"}) {
+      const bool fails = variant == "cardan" && input == "spike";
+      report["stability"]["rows"].push_back({{"variant", variant}, {"input", input}, {"error_of", "mass"}, {"why", "it <cancels>"}, {"max_error", fails ? 5000 : 2},
+                                             {"max_error_bound", 16}, {"bias", fails ? -0.25 : 0.001}, {"bias_standard_error", 0.001}, {"chi2_p", 0.5}, {"fails", fails},
+                                             {"failed", fails ? json({"max_error", "bias"}) : json::array()}});
+    }
+  return report;
+}
+
+TEST_F(PageTest, ShowsWhatMemoryBuysAndTheFitsThemselves) {
+  open(full_example());
+  draw_all();
+  EXPECT_EQ(count("#material-0 .chart svg"), charts + 1);
+  EXPECT_EQ(count("#material-1 [data-chart=front]"), 0) << "a chart without data";
+  // Two panels with four and one, and three points; one of each panel is ringed.
+  EXPECT_EQ(count("[data-chart=front] .mark-symbol.role-mark.points path"), 5 + 3);
+  EXPECT_EQ(text("[data-chart=front] .keys"), "compactdisplacement (outgoing)");
+  EXPECT_NE(text("[data-chart=front] .chart").find("kept"), std::string::npos);
+
+  EXPECT_NE(text("#material-0 [data-chart=goniometric] .keys").find("fit of 1"), std::string::npos);
+  EXPECT_EQ(text("#material-1 [data-chart=goniometric] .keys").find("fit"), std::string::npos);
+  browser_->evaluate("dispatchEvent(new Event('afterprint'))");
+  size(1200, 9000, false);
+  choose("#material-0 [data-tool=diagram]", "pdf");
+  EXPECT_TRUE(browser_->wait_for("document.querySelector('#material-0 [data-chart=goniometric] .keys').textContent.includes('lobes1')"));
+  EXPECT_EQ(text("#material-0 [data-chart=goniometric] .keys").find("fit of 1"), std::string::npos);
+
+  EXPECT_NE(text("#material-0 .methods thead").find("sample, batch, ns"), std::string::npos);
+  EXPECT_EQ(text("#material-1 .methods thead").find("batch"), std::string::npos);
+  EXPECT_NE(text("#provenance").find("gonio report 'a b.bsdf' -o <out>"), std::string::npos);
+  EXPECT_NE(text("#provenance").find("SHA-256 0123abcd"), std::string::npos);
+  expect_clean();
+}
+
+TEST_F(PageTest, ShowsWhereMethodsFail) {
+  open(full_example());
+  EXPECT_NE(text("#stability > p").find("1 of 1 textbook formulas fail somewhere, none of the library's 1."), std::string::npos);
+  EXPECT_EQ(text("#stability tbody tr"), "cardan1 of 25000 of 16-25 %0.5it <cancels>");
+  EXPECT_EQ(count("#stability .matrix td"), 4);
+  EXPECT_EQ(text("#stability .matrix td.fails"), "E Bfails");
+  EXPECT_EQ(count("#variant-rows tbody strong"), 1);
+  choose("#variant", "gonio-diagram");
+  EXPECT_EQ(count("#variant-rows tbody strong"), 0);
+  EXPECT_EQ(count("#variant-rows tbody tr"), 2);
+  expect_clean();
+}
+
+/// A chart that leaves the page names its series.
+TEST_F(PageTest, SavedChartsHaveAKey) {
+  open(full_example());
+  size(1200, 9000, false);
+  ASSERT_TRUE(browser_->wait_for("document.querySelectorAll('#material-0 .chart svg').length === document.querySelectorAll('#material-0 .chart').length"));
+  EXPECT_EQ(count("#material-0 .mark-group.role-legend"), 0);
+  browser_->evaluate("window.texts = []; HTMLAnchorElement.prototype.click = function () {};"
+                     "URL.createObjectURL = blob => { blob.text().then(text => texts.push(text)); return 'blob:'; }");
+  for (const std::string chart : {"relvar", "weights", "goniometric", "front"}) {
+    browser_->evaluate("texts.length = 0; document.querySelector('#material-0 [data-chart=" + chart + "] [data-save=svg]').click()");
+    ASSERT_TRUE(browser_->wait_for("texts.length === 1")) << chart;
+    const std::string svg = browser_->evaluate("texts[0]");
+    EXPECT_NE(svg.find("role-legend"), std::string::npos) << chart;
+    EXPECT_NE(svg.find(chart == "front" ? "compact" : "displacement (half)"), std::string::npos) << chart;
+    std::ofstream(std::filesystem::path(GONIO_PAGE_PICTURES) / ("saved_" + chart + ".svg")) << svg;
+  }
+}
+
 /// Pictures for people, in the folder GONIO_PAGE_PICTURES. Nothing may stick out of a phone.
 TEST_F(PageTest, Pictures) {
-  json report = example();
+  json report = full_example();
   if (const char* path = std::getenv("GONIO_REPORT_JSON")) {
     std::ifstream in(path);
     report = json::parse(in);
   }
   const std::filesystem::path folder = GONIO_PAGE_PICTURES;
-  std::filesystem::create_directories(folder);
   struct Picture {
     const char* name;
     int width;
-    bool dark;
+    bool dark, print;
   };
-  for (const Picture& picture : {Picture{"light", 1280, false}, {"dark", 1280, true}, {"phone", 390, false}}) {
-    size(picture.width, 900, picture.dark);
+  for (const Picture& picture : {Picture{"light", 1280, false, false}, {"dark", 1280, true, false}, {"phone", 390, false, false}, {"phone_dark", 390, true, false}, {"print", 740, false, true}}) {
+    size(picture.width, 900, picture.dark, picture.print);
     open(report);
-    size(picture.width, 9000, picture.dark);
-    ASSERT_TRUE(browser_->wait_for("document.querySelectorAll('#material-0 .chart svg').length === 7"));
+    if (picture.print) draw_all();
+    size(picture.width, 9000, picture.dark, picture.print);
+    ASSERT_TRUE(browser_->wait_for("document.querySelectorAll('#material-0 .chart svg').length === document.querySelectorAll('#material-0 .chart').length"));
     EXPECT_LE(browser_->evaluate("document.documentElement.scrollWidth").get<int>(), picture.width) << picture.name;
     const int height = browser_->evaluate("Math.ceil(document.documentElement.getBoundingClientRect().height)");
     const std::string shown = browser_->evaluate("getComputedStyle(document.body).backgroundColor");

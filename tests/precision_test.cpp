@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
+#include <vector>
 
 namespace gonio {
 namespace {
@@ -29,43 +31,77 @@ DiagramGrid grid(unsigned seed, double decades) {
   return g;
 }
 
+/// The largest errors met, in epsilons of float.
+struct Worst {
+  double u = 0, v = 0, pdf = 0, pdf_relative = 0, phi_mass = 0, r_mass = 0;
+};
+
+/// How far x is outside [low, high].
+double outside(double x, double low, double high) { return std::max({low - x, x - high, 0.0}); }
+
+/// Where a function that is linear between `lines` is largest and least within 4 epsilon of x.
+std::vector<long double> within_4_epsilon(float x, const std::vector<double>& lines) {
+  std::vector<long double> places{x - 4 * epsilon, x, x + 4 * epsilon};
+  for (const double line : lines)
+    if (std::abs(static_cast<float>(line) - x) < 4 * epsilon) places.push_back(static_cast<float>(line));
+  return places;
+}
+
 // The bounds that diagram.h states: a float diagram against the same diagram in long double.
-void against_long_double(const DiagramGrid& g, double& worst_u, double& worst_v, double& worst_pdf, double& worst_back) {
+void against_long_double(const DiagramGrid& g, Worst& worst) {
   const Diagram<float> d(g);
   const Diagram<long double> exact(d.grid());
-  const double scale = static_cast<double>(exact.mass());
+  const auto see = [](double& largest, double error) { largest = std::max(largest, error / epsilon); };
   double peak = 0;
   for (const double x : d.grid().density) peak = std::max(peak, x);
   std::mt19937 engine(3);
   std::uniform_real_distribution<float> random;
-  for (int k = 0; k < 200000; ++k) {
+  const auto below = [](float x) { return std::nextafter(x, -1.0f); };
+  const auto above = [](float x) { return std::nextafter(x, 9.0f); };
+  for (int k = 0; k < 50000; ++k) {
     const float u = random(engine), v = random(engine);
     const auto m = d.meridian_at(u);
     const auto p = d.parallel_at(m, v);
-    const auto em = exact.meridian_through(m.phi);
-    // Forward maps: how much mass really lies below the answer.
-    worst_back = std::max(worst_back, std::abs(static_cast<double>(exact.u_of(em) * exact.mass()) / scale - u));
-    worst_back = std::max(worst_back, std::abs(static_cast<double>(exact.v_of(em, p.r)) - v) *
-                                          std::min(1.0, static_cast<double>(em.mass)));
+    // Forward maps: the mass below the values next to the answer encloses what was asked for.
+    const auto u_below = [&](float phi) { return static_cast<double>(exact.u_of(exact.meridian_through(phi))); };
+    see(worst.phi_mass, outside(u, u_below(below(m.phi)), u_below(above(m.phi))));
+    double low = 1, high = 0, mass = 1;
+    for (const float at : {below(m.phi), m.phi, above(m.phi)}) {
+      const auto near = exact.meridian_through(at);
+      low = std::min(low, static_cast<double>(exact.v_of(near, below(p.r))));
+      high = std::max(high, static_cast<double>(exact.v_of(near, above(p.r))));
+      mass = std::min(mass, static_cast<double>(near.mass));
+    }
+    see(worst.r_mass, outside(v, low, high) * mass);
     // Inverse maps and pdf at a direction that floats hold exactly.
     // (Not beyond the last but one meridian: the last is at pi, as T holds it.)
     const float phi = static_cast<float>(g.phi[g.phi.size() - 2]) * random(engine), r = random(engine);
     const auto a = d.meridian_through(phi);
     const auto b = exact.meridian_through(phi);
-    worst_u = std::max(worst_u, std::abs(static_cast<double>(exact.u_of(b) - d.u_of(a))));
-    worst_v = std::max(worst_v, std::abs(static_cast<double>(exact.v_of(b, r) - d.v_of(a, r))));
-    worst_pdf = std::max(worst_pdf, std::abs(static_cast<double>(exact.pdf(b, r) - d.pdf(a, r))) / peak);
+    see(worst.u, std::abs(static_cast<double>(exact.u_of(b) - d.u_of(a))));
+    see(worst.v, std::abs(static_cast<double>(exact.v_of(b, r) - d.v_of(a, r))));
+    const double found = d.pdf(a, r), here = static_cast<double>(exact.pdf(b, r));
+    see(worst.pdf, std::abs(here - found) / peak);
+    low = high = here;
+    for (const long double near_phi : within_4_epsilon(phi, g.phi))
+      for (const long double near_r : within_4_epsilon(r, g.r)) {
+        const double there = static_cast<double>(exact.pdf(exact.meridian_through(near_phi), near_r));
+        low = std::min(low, there), high = std::max(high, there);
+      }
+    see(worst.pdf_relative, outside(found, low, high) / here);
   }
 }
 
 TEST(Precision, DiagramInFloat) {
   for (const double decades : {2.0, 12.0}) {
-    double u = 0, v = 0, pdf = 0, back = 0;
-    for (const unsigned seed : {1u, 2u, 3u}) against_long_double(grid(seed, decades), u, v, pdf, back);
-    EXPECT_LE(u, 4 * epsilon) << decades;
-    EXPECT_LE(v, 8 * epsilon) << decades;
-    EXPECT_LE(pdf, 4 * epsilon) << decades;
-    EXPECT_LE(back, (decades > 2 ? 64 : 16) * epsilon) << decades;
+    Worst worst;
+    for (const unsigned seed : {1u, 2u, 3u}) against_long_double(grid(seed, decades), worst);
+    EXPECT_LE(worst.u, 4) << decades;
+    EXPECT_LE(worst.v, 8) << decades;
+    EXPECT_LE(worst.pdf, 4) << decades;
+    EXPECT_LE(worst.pdf_relative, 16) << decades;
+    EXPECT_LE(worst.phi_mass, 16) << decades;
+    EXPECT_LE(worst.r_mass, 16) << decades;
   }
 }
 

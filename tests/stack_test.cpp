@@ -6,6 +6,7 @@
 #include <random>
 
 #include <gonio/mapping/error.h>
+#include <gonio/mapping/monotone_root.h>
 
 namespace gonio {
 namespace {
@@ -65,7 +66,7 @@ void round_trip(Interpolation interpolation, Azimuth azimuth, double bound, doub
 
 TEST(Stack, RoundTrip) {
   for (const auto interpolation : {Interpolation::nearest, Interpolation::mixture, Interpolation::displacement}) {
-    round_trip<float>(interpolation, Azimuth::half, 1e-4, 1e-3);
+    round_trip<float>(interpolation, Azimuth::half, 1e-4, 2e-3);
     round_trip<double>(interpolation, Azimuth::half, 1e-12, 1e-9);
     round_trip<double>(interpolation, Azimuth::full, 1e-12, 1e-9);
   }
@@ -209,6 +210,25 @@ TEST(Stack, RefusesBadInput) {
   grid.diagrams[2] = lobes(Azimuth::full).diagrams[2];
   EXPECT_THROW(Stack<float>(grid, Interpolation::nearest), Error);
   EXPECT_THROW(Stack<float>(StackGrid{}, Interpolation::nearest), Error);
+}
+
+// Also where the function jumps, is flat or has a root of high order: the step rule alone must end the search.
+TEST(MonotoneRoot, FewSteps) {
+  const auto check = [](const auto& f, float root, float bound) {
+    for (const float start : {0.0f, 0.1f, 0.5f, 1.0f}) {
+      int steps = 0;
+      const float x = monotone_root([&](float at) { return ++steps, f(at); }, start, 0.0f, 1.0f);
+      EXPECT_NEAR(x, root, bound);
+      EXPECT_LE(steps, 64) << root << " from " << start;
+    }
+  };
+  for (const float root : {1e-4f, 0.3f, 0.9999f}) {
+    check([&](float x) { return Slope<float>{x - root, 1}; }, root, 1e-6f);
+    check([&](float x) { return Slope<float>{x < root ? -1.0f : 1.0f, 0}; }, root, 1e-6f);
+    check([&](float x) { return Slope<float>{std::cbrt(x - root), std::pow(x - root, -2.0f / 3) / 3}; }, root, 1e-6f);
+    check([&](float x) { return Slope<float>{std::pow(x - root, 5.0f), 5 * std::pow(x - root, 4.0f)}; }, root, 1e-2f);
+    check([&](float x) { return Slope<float>{x < root ? 1e-3f * (x - root) : 1e3f * (x - root), x < root ? 1e-3f : 1e3f}; }, root, 1e-6f);
+  }
 }
 
 }  // namespace

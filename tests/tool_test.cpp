@@ -1,6 +1,7 @@
 // Runs the program GONIO_TOOL as a user does.
 
 #include <gonio/brdf/albedo.h>
+#include <gonio/brdf/build.h>
 #include <gonio/brdf/bytes.h>
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/tests/table_files.h>
@@ -47,7 +48,7 @@ struct Outcome {
 /// "building the stack of a.mbsdf: 30 %, 2 s"
 bool is_progress(const std::string& line) {
   const std::string verb = line.substr(0, line.find(' '));
-  const std::string verbs[] = {"reading", "building", "writing", "computing", "checking"};
+  const std::string verbs[] = {"reading", "building", "fitting", "writing", "computing", "checking"};
   return std::find(std::begin(verbs), std::end(verbs), verb) != std::end(verbs) &&
          line.size() > 2 && line.substr(line.size() - 2) == " s";
 }
@@ -197,6 +198,8 @@ TEST_F(ToolTest, OptionsWithoutEffectAreRefused) {
   expect_error("convert a.mbsdf b.binary --incident 9", {"--incident"});
   expect_error("convert a.mbsdf b.mbsdf --tolerance 0.1", {"--tolerance"});
   expect_error("convert a.mbsdf b.mbsdf --bytes 1MiB", {"--bytes"});
+  expect_error("convert a.mbsdf b.mbsdf --budget 1MiB", {"--budget"});
+  expect_error("convert a.mbsdf b.exr --max-variance 0.1 --incident 9", {"--max-variance", "by hand"});
   expect_error("convert a.mbsdf b.mbsdf --negative fill", {"--negative", "as they are stored"});
   expect_error("convert a.mbsdf b.mbsdf --phi-d 180", {"--phi-d"});
   expect_error("convert a.mbsdf b.binary --phi-d 90", {"--phi-d", "90"});
@@ -214,7 +217,7 @@ TEST_F(ToolTest, OutputsThatCannotBeWritten) {
   // Permissions do not hold root back; /proc does.
   const std::string read_only = geteuid() == 0 ? "/proc/" : "read_only/";
   expect_error("convert a.mbsdf b.png",
-               {"b.png: extension: found .png, expected one of .exr, .binary, .mbsdf"});
+               {"b.png: extension: found .png, expected one of .exr, .binary, .mbsdf, .bsdf"});
   expect_error("convert a.mbsdf b", {"b: extension: found none"});
   expect_error("convert a.mbsdf missing/b.exr",
                {"missing/b.exr: folder: found none, expected missing"});
@@ -576,7 +579,7 @@ const Damage damages[] = {
        const std::string name("gonio:format\0int\0", 17);
        return replaced(good, good.find(name) + name.size() + 4, 7);
      },
-     "attribute gonio:format: found 7, expected 1"},
+     "attribute gonio:format: found 7, expected 2"},
 };
 
 INSTANTIATE_TEST_SUITE_P(Tool, DamageTest, testing::ValuesIn(damages),
@@ -631,6 +634,58 @@ TEST_F(ToolTest, ValidateDoubtsAStack) {
         "warning: theta_i: found a last diagram at 11.46", "warning: colour: found none"}) {
     EXPECT_TRUE(contains(run.out, part)) << run.out;
   }
+}
+
+// ---------------------------------------------------------------- other renderers, merged reports
+
+TEST_F(ToolTest, ConvertsToRgl) {
+  write("a.mbsdf", sample_mbsdf());
+  expect_ok("convert a.mbsdf a.bsdf");
+  EXPECT_EQ(execute("validate a.bsdf").out, "a.bsdf: ok\n");
+  const std::string info = execute("info a.bsdf").out;
+  EXPECT_TRUE(contains(info, "RGL, RGB")) << info;
+  for (const int degrees : {2, 50, 80}) {
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(printed_albedo(info, degrees)[c], 0.5f, 0.003f) << degrees;
+  }
+  // The same values without the spectra, and with them again.
+  expect_ok("convert a.bsdf b.bsdf --rgb");
+  expect_ok("convert b.bsdf c.bsdf");
+  EXPECT_LT(fs::file_size(path("b.bsdf")), fs::file_size(path("a.bsdf")) / 2);
+  EXPECT_EQ(read_bytes(path("c.bsdf")), read_bytes(path("a.bsdf")));
+  write("small.bsdf", sample_rgl());
+  expect_error("convert small.bsdf d.bsdf", {"d.bsdf: luminance and rgb: found 3 x 2"});
+  expect_error("convert a.bsdf d.bsdf --negative fill", {"--negative"});
+  expect_error("convert a.mbsdf d.bsdf --grid 9x9", {"--grid"});
+  expect_error("convert a.mbsdf d.binary --rgb", {"--rgb", "only .bsdf"});
+  expect_error("convert a.mbsdf missing/d.bsdf", {"missing/d.bsdf: folder"});
+}
+
+TEST_F(ToolTest, MergesReports) {
+  const auto report = [](const std::string& cpu, const std::string& material) {
+    return "{\"gonio_version\": \"" GONIO_VERSION "\", \"machine\": {\"cpu\": \"" + cpu +
+           "\", \"threads\": 4}, \"lights\": [], \"materials\": [{\"name\": \"" + material +
+           "\", \"format\": \"merl\", \"methods\": [{\"id\": \"cosine\", \"efficiency\": 1}, "
+           "{\"id\": \"displacement\", \"chart\": \"outgoing\", \"efficiency\": 2, \"mean_relvar\": 0.01, "
+           "\"ns\": {\"sample\": 50}}]}]}";
+  };
+  fs::create_directory(path("x"));
+  write("x/report.json", report("fast", "chrome"));
+  write("b.json", report("slow", "gold"));
+  expect_ok("report --merge x/report.json b.json x/report.json -o all");
+  const std::string json = read_bytes(path("all/report.json")), text = read_bytes(path("all/report.md"));
+  EXPECT_TRUE(contains(json, "fast; slow\""));
+  EXPECT_TRUE(contains(json, "\"threads\": 4"));
+  EXPECT_LT(json.find("chrome"), json.find("gold"));
+  EXPECT_NE(json.find("chrome"), json.rfind("chrome"));
+  EXPECT_TRUE(contains(text, "3 materials"));
+  EXPECT_TRUE(contains(text, "| [chrome](../x/report.html) | merl | displacement | outgoing | 50 | 0.01 | 2 |")) << text;
+  EXPECT_TRUE(contains(read_bytes(path("all/report.html")), "slow"));
+  write("text.json", "no report");
+  expect_error("report --merge x/report.json text.json -o two", {"text.json: content"});
+  write("list.json", "[1]");
+  expect_error("report --merge list.json -o two", {"list.json: materials"});
+  write("old.json", "{\"gonio_version\": \"0.0.1\", \"materials\": [], \"lights\": []}");
+  expect_error("report --merge old.json -o two", {"old.json: gonio_version: found \"0.0.1\""});
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <gonio/tools/info.h>
 #include <gonio/tools/light/light.h>
 #include <gonio/tools/ndf.h>
+#include <gonio/tools/render/compare.h>
+#include <gonio/tools/render/render.h>
 #include <gonio/tools/report/report.h>
 #include <gonio/tools/stability/stability.h>
 #include <gonio/tools/synth.h>
@@ -51,12 +53,14 @@ int main(int argc, char** argv) {
   gonio::add_info(app);
   gonio::add_validate(app);
   gonio::add_convert(app);
-  gonio::add_report(app);
+  gonio::add_report(app, {argv + 1, argv + argc});
   gonio::add_synth(app);
   gonio::add_fit(app);
   gonio::add_light(app);
   gonio::add_stability(app);
   gonio::add_ndf(app);
+  gonio::add_render(app);
+  gonio::add_compare(app);
   try {
     app.parse(argc, argv);
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <glm/vec3.hpp>
 #include <vector>
@@ -29,10 +30,12 @@ class Bins {
   /// The cell of a unit vector; on a hemisphere vectors with z < 0 have none: size() is returned.
   std::size_t index(const glm::vec3& w) const noexcept;
 
-  /// The integral of a density over every cell, by adaptive Gauss-Legendre quadrature. The error of the
+  /// The integral of a density over every cell, by adaptive Gauss-Lobatto quadrature. The error of the
   /// sum is below 1e-3 for densities that integrate to about 1 and have no feature narrower than a
   /// hundredth of a cell.
-  std::vector<double> integrate(const Density& density) const;
+  /// @param draws of a pdf, how many draws are compared with it: cells in which few of them are
+  ///   expected are then integrated as finely as their scatter asks for.
+  std::vector<double> integrate(const Density& density, std::uint64_t draws = 0) const;
   /// The same for an RGB function, summed over the domain.
   glm::dvec3 integrate_rgb(const std::function<glm::vec3(const glm::vec3&)>& function) const;
 

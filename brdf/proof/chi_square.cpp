@@ -16,6 +16,7 @@ namespace gonio::proof {
 ChiSquare chi_square(const Draw& draw, const Density& pdf, const Bins& bins, std::uint64_t draws) {
   ChiSquare result;
   result.draws = draws;
+  result.expected = bins.integrate(pdf, draws);
   result.observed.assign(bins.size(), 0);
   for (std::uint64_t k = 0; k < draws; ++k) {
     const auto w = draw(k);
@@ -24,12 +25,14 @@ ChiSquare chi_square(const Draw& draw, const Density& pdf, const Bins& bins, std
       continue;
     }
     const std::size_t cell = std::isfinite(w->x + w->y + w->z) ? bins.index(*w) : bins.size();
-    if (cell == bins.size())
+    if (cell == bins.size()) {
       ++result.outside;
-    else
-      ++result.observed[cell];
+      continue;
+    }
+    ++result.observed[cell];
+    // The quadrature may have missed a sliver of the cell: the density where the draw is has the last word.
+    if (result.expected[cell] == 0 && !(pdf(*w) > 0)) ++result.where_zero;
   }
-  result.expected = bins.integrate(pdf);
   result.pdf_integral = std::accumulate(result.expected.begin(), result.expected.end(), 0.0);
   const double inside = static_cast<double>(draws - result.empty - result.outside);
   if (!(result.pdf_integral > 0) || inside == 0) return result;
@@ -46,9 +49,7 @@ ChiSquare chi_square(const Draw& draw, const Density& pdf, const Bins& bins, std
   };
   for (const std::size_t k : order) {
     const double expected = result.expected[k], observed = static_cast<double>(result.observed[k]);
-    if (expected == 0) {
-      result.where_zero += result.observed[k];
-    } else if (expected < 5 || (pooled_expected > 0 && pooled_expected < 5)) {
+    if (expected < 5 || (pooled_expected < 5 && pooled_expected + pooled_observed > 0)) {
       pooled_expected += expected;
       pooled_observed += observed;
     } else {

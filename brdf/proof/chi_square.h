@@ -19,7 +19,7 @@ struct ChiSquare {
   std::uint64_t draws = 0;   ///< all of them
   std::uint64_t empty = 0;   ///< draws without a direction
   std::uint64_t outside = 0; ///< draws outside the domain or with a component that is not finite
-  std::uint64_t where_zero = 0;  ///< draws in cells over which the pdf is 0
+  std::uint64_t where_zero = 0;  ///< draws where the pdf is 0, in cells over which it is
   std::vector<double> expected;       ///< per cell of the bins, for the draws that have a direction
   std::vector<std::uint64_t> observed;  ///< per cell of the bins
 

@@ -90,6 +90,11 @@ double table_lobe(double theta, double phi, double theta0, double phi0, double w
 
 }  // namespace
 
+bool shared_lines(const StackGrid& grid) {
+  return std::all_of(grid.diagrams.begin(), grid.diagrams.end(),
+                     [&](const DiagramGrid& d) { return d.phi == grid.diagrams[0].phi && d.r == grid.diagrams[0].r; });
+}
+
 std::vector<GalleryStack> gallery_stacks() {
   const Lines phi = even(pi<double>, 13), r = even(1, 17);
   // A lobe in the mirror direction over a floor, for the entries that need something ordinary around.

@@ -26,6 +26,9 @@ inline constexpr double gallery_angles[] = {0.0, 0.45, 0.95, 1.4};
 
 std::vector<GalleryStack> gallery_stacks();
 
+/// Whether all diagrams of a stack have the lines of the first, as Interpolation::blend needs.
+bool shared_lines(const StackGrid& grid);
+
 /// A measured table, as a file would hold it: what BrdfTable and Sampler are built from.
 struct GalleryTable {
   std::string name;

@@ -53,7 +53,7 @@ struct InvariantOptions {
 /// - `domain`: draws are finite unit vectors above the horizon with pdf > 0 and finite, for u and v
 ///   at 0, next to 1 and anywhere. Number of draws that are not; 0.
 /// - `mass`: the pdf by quadrature, no draw involved, and the share of empty draws make 1.
-/// - `where_zero`: number of draws in cells over which the pdf integrates to 0; 0.
+/// - `where_zero`: number of draws where the pdf is 0, in cells over which it is by quadrature; 0.
 /// - `chi_square`: p of the draws against the pdf, in cells adapted to its peaks.
 /// - `moments`: two-sided p of the t-test of the draws' mean x, y and z against their quadrature, the
 ///   least of the three. (With so many draws Student's distribution is the normal one.)

@@ -9,8 +9,11 @@
 namespace gonio::proof {
 namespace {
 
-/// Stack::invert() with directions of the surface.
-auto inverse_of(const Stack<float>& stack) {
+glm::vec3 incident(double theta_i) { return {static_cast<float>(std::sin(theta_i)), 0, static_cast<float>(std::cos(theta_i))}; }
+
+/// invert() of a stack with directions of the surface.
+template <class S>
+auto inverse_of(const S& stack) {
   return [&stack](const glm::vec3& wi, const glm::vec3& wo) -> std::optional<glm::vec2> {
     const IncidentFrame frame(wi);
     const auto inverse = stack.invert(frame.theta_i, frame.to_diagram(wo));
@@ -19,15 +22,8 @@ auto inverse_of(const Stack<float>& stack) {
   };
 }
 
-}  // namespace
-
-Subject subject_of(const Sampler& sampler) {
-  Subject subject = subject_of<Sampler>(sampler);
-  subject.invert = inverse_of(sampler.stack());
-  return subject;
-}
-
-Subject subject_of(const Stack<float>& stack) {
+template <class S>
+Subject subject_of_stack(const S& stack) {
   Subject subject;
   subject.sample = [&stack](const glm::vec3& wi, const glm::vec2& u) -> std::optional<BsdfSample> {
     const IncidentFrame frame(wi);
@@ -43,8 +39,31 @@ Subject subject_of(const Stack<float>& stack) {
   return subject;
 }
 
+}  // namespace
+
+Subject subject_of(const Sampler& sampler) {
+  Subject subject = subject_of<Sampler>(sampler);
+  subject.direction = [&stack = sampler.stack()](const glm::vec3& wi, const glm::vec2& u) -> std::optional<glm::vec3> {
+    const IncidentFrame frame(wi);
+    const auto s = stack.sample(frame.theta_i, u.x, u.y);
+    if (!(wi.z > 0 && s.pdf > 0 && s.wo.z > 0)) return std::nullopt;
+    return frame.to_surface(s.wo);
+  };
+  subject.invert = inverse_of(sampler.stack());
+  return subject;
+}
+
+Subject subject_of(const Stack<float>& stack) { return subject_of_stack(stack); }
+Subject subject_of(const PackedStack& stack) { return subject_of_stack(stack); }
+
+glm::dvec3 albedo(const Subject& subject, double theta_i) {
+  const glm::vec3 wi = incident(theta_i);
+  const auto value = [&](const glm::vec3& wo) { return subject.f_r(wi, wo) * wo.z; };
+  return Bins::adapted([&](const glm::vec3& wo) { return static_cast<double>(luminance(value(wo))); }).integrate_rgb(value);
+}
+
 Quality measure(const Subject& subject, double theta_i, const MeasureOptions& options) {
-  const glm::vec3 wi(static_cast<float>(std::sin(theta_i)), 0, static_cast<float>(std::cos(theta_i)));
+  const glm::vec3 wi = incident(theta_i);
   Quality q{};
   q.theta_i = theta_i;
 
@@ -79,10 +98,12 @@ Quality measure(const Subject& subject, double theta_i, const MeasureOptions& op
   const Density pdf = [&](const glm::vec3& wo) { return subject.pdf(wi, wo); };
   const double mean = sum > 0 ? sum / count : 1;
   const Bins bins = Bins::adapted([&](const glm::vec3& wo) { return pdf(wo) + luminance(value(wo)) / mean; });
-  q.albedo_table = bins.integrate_rgb(value);
+  q.albedo_table = options.albedo_table ? *options.albedo_table : bins.integrate_rgb(value);
   q.chi2 = chi_square(
       [&](std::uint64_t) -> std::optional<glm::vec3> {
-        const auto s = subject.sample(wi, random.pair());
+        const glm::vec2 u = random.pair();
+        if (subject.direction) return subject.direction(wi, u);
+        const auto s = subject.sample(wi, u);
         return s ? std::optional(s->wo) : std::nullopt;
       },
       pdf, bins, options.chi2_draws);

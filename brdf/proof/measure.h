@@ -6,6 +6,7 @@
 
 #include <gonio/brdf/proof/chi_square.h>
 #include <gonio/brdf/sampler.h>
+#include <gonio/mapping/packed_stack.h>
 
 namespace gonio::proof {
 
@@ -15,6 +16,8 @@ struct Subject {
   std::function<std::optional<BsdfSample>(const glm::vec3& wi, const glm::vec2& u)> sample;
   std::function<double(const glm::vec3& wi, const glm::vec3& wo)> pdf;
   std::function<glm::vec3(const glm::vec3& wi, const glm::vec3& wo)> f_r;
+  /// Optional: the direction that sample() draws, without the weight, which costs as much.
+  std::function<std::optional<glm::vec3>(const glm::vec3& wi, const glm::vec2& u)> direction = nullptr;
   /// Optional: the numbers that sample() maps to wo; nothing where no draw falls.
   std::function<std::optional<glm::vec2>(const glm::vec3& wi, const glm::vec3& wo)> invert = nullptr;
 };
@@ -27,17 +30,19 @@ Subject subject_of(const S& sampler) {
           [&](const glm::vec3& wi, const glm::vec3& wo) { return sampler.eval(wi, wo); }};
 }
 
-/// The same for a Sampler, with the inverse of its stack.
+/// The same for a Sampler, with directions from its stack and the inverse of it.
 Subject subject_of(const Sampler& sampler);
 
 /// A stack alone, without a BRDF: weights are 1, and `f_r` is empty. measure() cannot take it,
 /// check_invariants() can. The stack must outlive it.
 Subject subject_of(const Stack<float>& stack);
+Subject subject_of(const PackedStack& stack);
 
 struct MeasureOptions {
   int grid = 256;                        ///< relvar is measured on grid x grid jittered points of the square
   std::uint64_t chi2_draws = 1u << 18;   ///< independent draws of the goodness-of-fit test
   std::uint32_t seed = 1;
+  std::optional<glm::dvec3> albedo_table;  ///< where albedo() is known already: subjects of one table share it
 };
 
 /// How well a sampler does at one incident angle.
@@ -51,6 +56,9 @@ struct Quality {
   glm::dvec3 albedo_table;    ///< the integral of f_r cos theta_o by quadrature, no sampler involved
   ChiSquare chi2;             ///< of sample() against pdf()
 };
+
+/// The integral of f_r cos theta_o at theta_i [rad] in [0, pi/2), by quadrature adapted to it.
+glm::dvec3 albedo(const Subject& subject, double theta_i);
 
 /// Measures a sampler at theta_i [rad] in [0, pi/2). Deterministic for a seed. The bins and the
 /// quadrature are adapted to both the pdf and f_r cos theta_o.

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/archive/iterators/base64_from_binary.hpp>
-#include <boost/archive/iterators/transform_width.hpp>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -15,6 +13,7 @@
 
 #include <gonio/mapping/atomic_file.h>
 #include <gonio/mapping/error.h>
+#include <gonio/tools/base64.h>
 
 namespace gonio {
 namespace {
@@ -67,16 +66,6 @@ std::string png(const DiskImage& image, const Contrast& contrast) {
     throw Error(std::string("picture: cannot be compressed: ") + header.message);
   bytes.resize(size);
   return bytes;
-}
-
-std::string base64(std::string bytes) {
-  using namespace boost::archive::iterators;
-  using Digits = base64_from_binary<transform_width<std::string::const_iterator, 6, 8>>;
-  const std::size_t padding = (3 - bytes.size() % 3) % 3;
-  bytes.append(padding, '\0');
-  std::string text(Digits(bytes.cbegin()), Digits(bytes.cend()));
-  text.replace(text.size() - padding, padding, padding, '=');
-  return text;
 }
 
 }  // namespace

@@ -193,4 +193,15 @@ nlohmann::json method_curves(const proof::Subject& subject, double theta_i, cons
   return curves;
 }
 
+nlohmann::json model_curves(const LobeModel& model, double theta_i, const nlohmann::json& theta_o_deg, double albedo) {
+  const glm::vec3 wi = incident(theta_i);
+  nlohmann::json values = nlohmann::json::array();
+  for (const double t : theta_o_deg) {
+    const glm::vec3 wo = in_plane(t);
+    const double value = static_cast<double>(luminance(glm::vec3(model.eval(wi, wo)))) * static_cast<double>(wo.z);
+    values.push_back(albedo > 0 ? rounded(value / albedo) : 0);
+  }
+  return {{"theta_i_deg", theta_i}, {"model", std::move(values)}};
+}
+
 }  // namespace gonio

@@ -3,17 +3,20 @@
 #include <algorithm>
 #include <chrono>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <mutex>
 #include <set>
 #include <thread>
+#include <type_traits>
 
 #include <gonio/tools/report/curves.h>
+#include <gonio/tools/front.h>
 #include <gonio/tools/report/timing.h>
 
 #include <gonio/brdf/baseline.h>
-#include <gonio/brdf/choose_stack.h>
 #include <gonio/brdf/exr/stack_file.h>
+#include <gonio/brdf/fit_compact.h>
 #include <gonio/brdf/parallel.h>
 #include <gonio/fitting/fit_json.h>
 #include <gonio/fitting/lobe_sampler.h>
@@ -23,6 +26,8 @@
 
 namespace gonio {
 namespace {
+
+constexpr double compact_variance = 0.01;  // relvar of the method `compact`
 
 nlohmann::json stack_params(const Stack<float>& stack) {
   std::size_t crossings = 0;
@@ -38,74 +43,131 @@ nlohmann::json stack_params(const Stack<float>& stack) {
           {"mean_crossings", crossings / stack.theta_i().size()}};
 }
 
+nlohmann::json stack_params(const CompactBsdf& bsdf) {
+  const auto* packed = std::get_if<PackedStack>(&bsdf.stack());
+  nlohmann::json params = packed ? stack_params(Stack<float>(packed->grid(), Interpolation::blend))
+                                 : stack_params(std::get<Stack<float>>(bsdf.stack()));
+  params["storage"] = to_string(bsdf.storage());
+  params["colour_cells"] = bsdf.colour().side() * (bsdf.colour().side() / 2);
+  params["colour_angles"] = bsdf.colour().theta_i().size();
+  return params;
+}
+
+/// A compact BSDF as what it is worth to its table: directions and pdf are its own, f_r is the table's.
+struct AgainstTable {
+  std::shared_ptr<const BrdfTable> table;
+  CompactBsdf bsdf;
+
+  std::optional<BsdfSample> sample(const glm::vec3& wi, const glm::vec2& u) const {
+    auto s = bsdf.sample(wi, u);
+    if (s) s->weight = table->eval(wi, s->wo) * (s->wo.z / s->pdf);
+    return s;
+  }
+  float pdf(const glm::vec3& wi, const glm::vec3& wo) const { return bsdf.pdf(wi, wo); }
+  glm::vec3 eval(const glm::vec3& wi, const glm::vec3& wo) const { return table->eval(wi, wo); }
+};
+
 /// Collects what is to be measured; the samplers live in the closures.
 class Bench {
  public:
   template <class S>
   void add(std::string id, std::string chart, nlohmann::json params, double build_seconds, std::shared_ptr<const S> sampler) {
+    const S& timed = *sampler;
+    add(std::move(id), std::move(chart), std::move(params), build_seconds, timed, std::move(sampler));
+  }
+
+  /// The same, with times and bytes of another than is measured.
+  template <class Timed, class S>
+  void add(std::string id, std::string chart, nlohmann::json params, double build_seconds, const Timed& timed,
+           std::shared_ptr<const S> sampler) {
     MethodReport method;
     method.id = std::move(id);
     method.chart = std::move(chart);
     method.params = std::move(params);
-    method.bytes = sampler->bytes();
+    method.bytes = timed.bytes();
     method.build_seconds = build_seconds;
-    method.ns = time_sampler(*sampler);
+    const TimedQueries queries(timed);
+    method.ns = time_sampler(timed, queries);
+    if constexpr (std::is_same_v<Timed, Sampler>) {
+      if (timed.stack().interpolation() != Interpolation::mixture) method.ns_batch = time_batch(BatchSampler(timed), queries);
+    } else if constexpr (std::is_same_v<Timed, CompactBsdf>) {
+      method.ns_batch = time_batch(BatchSampler(timed), queries);
+    }
     methods_.push_back(std::move(method));
     subjects_.push_back(proof::subject_of(*sampler));
     owners_.push_back(std::move(sampler));
   }
 
-  /// Measures all methods into the material, and then the curves.
+  /// Measures all methods into the material, and their curves.
   void run(MaterialReport& material, const Progress& progress) {
-    constexpr std::size_t angles = std::size(report_angles);
+    constexpr std::size_t angles = std::size(report_angles), sections = std::size(curve_angles);
+    // What belongs to the table is the same for all methods.
+    glm::dvec3 albedo[angles];
+    parallel_for(angles, [&](std::size_t k) { albedo[k] = proof::albedo(subjects_.front(), radians(report_angles[k])); });
+    std::vector<nlohmann::json> sections_of_table(sections);
+    for (std::size_t k = 0; k < sections; ++k) {
+      const auto at = std::find(std::begin(report_angles), std::end(report_angles), curve_angles[k]) - std::begin(report_angles);
+      const double reflected = static_cast<double>(luminance(glm::vec3(albedo[at])));
+      sections_of_table[k] = table_curves(subjects_.front(), curve_angles[k], reflected);
+      for (nlohmann::json& fit : material.fits)
+        fit["curves"].push_back(model_curves(parse_model(fit["model"].get<std::string>()), curve_angles[k], sections_of_table[k]["theta_o_deg"], reflected));
+    }
+
+    std::vector<std::function<void()>> jobs;  // the longest first, or they would end alone
+    const auto add_jobs = [&](std::size_t count, const auto& job) {
+      for (std::size_t m = 0; m < methods_.size(); ++m)
+        for (std::size_t k = 0; k < count; ++k) jobs.push_back([=] { job(m, k); });
+    };
+    add_jobs(1, [&](std::size_t m, std::size_t) {
+      methods_[m].convergence = proof::measure_convergence(subjects_[m], radians(coherence_angle));
+    });
+    add_jobs(angles, [&](std::size_t m, std::size_t k) {
+      proof::MeasureOptions options;
+      options.albedo_table = albedo[k];
+      methods_[m].angles[k] = proof::measure(subjects_[m], radians(report_angles[k]), options);
+    });
+    add_jobs(1, [&](std::size_t m, std::size_t) {
+      methods_[m].coherence = proof::measure_coherence(subjects_[m], radians(coherence_angle));
+    });
+    std::vector<std::vector<nlohmann::json>> curves(methods_.size(), std::vector<nlohmann::json>(sections));
+    add_jobs(sections, [&](std::size_t m, std::size_t k) {
+      curves[m][k] = method_curves(subjects_[m], curve_angles[k], sections_of_table[k]["theta_o_deg"], has_grid(methods_[m].id));
+    });
+    std::vector<WeightRow> weights(methods_.size());
+    add_jobs(angles, [&](std::size_t m, std::size_t k) {
+      if (!weights[m].maps.empty()) weights[m].maps[k] = weight_map(subjects_[m], radians(report_angles[k]));
+    });
+    for (std::size_t m = 0; m < methods_.size(); ++m) {
+      methods_[m].angles.resize(angles);
+      if (methods_[m].id == "displacement" || methods_[m].id == "blend") weights[m].maps.resize(angles);
+    }
+
     std::mutex mutex;
     std::size_t done = 0;
-    for (MethodReport& m : methods_) m.angles.resize(angles);
-    // For each method its angles, and coherence as one more.
-    const std::size_t jobs = methods_.size() * (angles + 1);
-    parallel_for(jobs, [&](std::size_t job) {
-      const std::size_t m = job / (angles + 1), k = job % (angles + 1);
-      const double theta_i = (k < angles ? report_angles[k] : coherence_angle) * pi<double> / 180;
-      if (k < angles) {
-        methods_[m].angles[k] = proof::measure(subjects_[m], theta_i);
-      } else {
-        methods_[m].coherence = proof::measure_coherence(subjects_[m], theta_i);
-        methods_[m].convergence = proof::measure_convergence(subjects_[m], theta_i);
-      }
+    parallel_for(jobs.size(), [&](std::size_t job) {
+      jobs[job]();
       const std::lock_guard<std::mutex> lock(mutex);
-      progress(static_cast<double>(++done) / static_cast<double>(jobs));
+      progress(static_cast<double>(++done) / static_cast<double>(jobs.size()));
     });
-    add_curves(material);
-    add_weights(material);
+
+    material.curves = sections_of_table;
+    for (std::size_t m = 0; m < methods_.size(); ++m) {
+      methods_[m].curves = curves[m];
+      if (weights[m].maps.empty()) continue;
+      weights[m].name = methods_[m].id + " / " + methods_[m].chart;
+      for (const proof::Quality& q : methods_[m].angles) weights[m].relvar.push_back(q.relvar);
+      material.weights.push_back(std::move(weights[m]));
+    }
     material.methods = std::move(methods_);
   }
 
  private:
-  void add_weights(MaterialReport& material) {
-    for (std::size_t m = 0; m < methods_.size(); ++m) {
-      if (methods_[m].id != "displacement" && methods_[m].id != "blend") continue;
-      WeightRow row{methods_[m].id + " / " + methods_[m].chart, {}, {}};
-      row.maps.resize(std::size(report_angles));
-      parallel_for(row.maps.size(), [&](std::size_t k) { row.maps[k] = weight_map(subjects_[m], report_angles[k] * pi<double> / 180); });
-      for (const proof::Quality& q : methods_[m].angles) row.relvar.push_back(q.relvar);
-      material.weights.push_back(std::move(row));
-    }
-  }
+  static double radians(double degrees) { return degrees * pi<double> / 180; }
 
-  void add_curves(MaterialReport& material) {
-    // Grids are most of the page's bytes; those of these say little.
-    static const std::set<std::string> no_grid{"uniform", "cosine", "nearest", "lobes1", "lobes2", "lobes3", "displacement_small"};
-    for (const double theta_i : curve_angles) {
-      const auto k = std::find(std::begin(report_angles), std::end(report_angles), theta_i) - std::begin(report_angles);
-      const double albedo = static_cast<double>(luminance(glm::vec3(methods_.front().angles[static_cast<std::size_t>(k)].albedo_table)));
-      material.curves.push_back(table_curves(subjects_.front(), theta_i, albedo));
-      const nlohmann::json& theta_o = material.curves.back()["theta_o_deg"];
-      std::vector<nlohmann::json> curves(methods_.size());
-      parallel_for(methods_.size(), [&](std::size_t m) {
-        curves[m] = method_curves(subjects_[m], theta_i, theta_o, no_grid.count(methods_[m].id) == 0);
-      });
-      for (std::size_t m = 0; m < methods_.size(); ++m) methods_[m].curves.push_back(std::move(curves[m]));
-    }
+  /// Grids are most of the page's bytes; those of some methods say little.
+  static bool has_grid(const std::string& id) {
+    static const std::set<std::string> without{"uniform", "cosine", "nearest", "lobes1", "lobes2", "lobes3", "displacement_small"};
+    return without.count(id) == 0;
   }
 
   std::vector<MethodReport> methods_;
@@ -121,7 +183,8 @@ double seconds_since(Clock::time_point start) {
 
 /// Adds the fits to the report and their samplers, lobes1 to lobes3, to the bench. Returns the
 /// bytes of the largest of them; 0 if there is nothing to fit, the table being black.
-std::size_t add_lobes(const std::shared_ptr<const BrdfTable>& table, MaterialReport& material, Bench& bench) {
+std::size_t add_lobes(const std::shared_ptr<const BrdfTable>& table, MaterialReport& material, Bench& bench,
+                      std::vector<FrontPoint>& points) {
   TableFits fits;
   try {
     fits = fit_table(*table, parse_model(default_fit_form));
@@ -132,6 +195,7 @@ std::size_t add_lobes(const std::shared_ptr<const BrdfTable>& table, MaterialRep
   for (const StageFit& stage : fits.stages) {
     const LobeModel& model = stage.fit.model;
     const nlohmann::json written = nlohmann::json::parse(to_json(stage.fit, stage.errors));
+    points.push_back(front_point(table, stage));
     material.fits.push_back({{"model", describe(model)}, {"parameters", written["lobes"]}, {"fit", written["fit"]}, {"errors", written["errors"]}});
     const nlohmann::json params = {{"model", describe(model)}, {"adaption", "shapes"}, {"fit_seconds", fits.seconds}};
     const auto start = Clock::now();
@@ -147,6 +211,7 @@ void add_small_stack(const std::shared_ptr<const BrdfTable>& table, std::size_t 
   const auto start = Clock::now();
   std::shared_ptr<const Sampler> sampler;
   for (const int side : {4, 5, 6, 8, 12, 16}) {  // upwards: those that do not fit take longest to build
+    if (sampler && sampler->bytes() > bytes) break;
     StackOptions options;
     options.meridians = options.parallels = side;
     options.bytes = bytes;
@@ -157,50 +222,49 @@ void add_small_stack(const std::shared_ptr<const BrdfTable>& table, std::size_t 
   bench.add<Sampler>("displacement_small", "outgoing", stack_params(sampler->stack()), seconds_since(start), sampler);
 }
 
-/// The half-vector chart, with both continuous interpolations, at the limits of the other stacks.
-void add_half_stacks(const std::shared_ptr<const BrdfTable>& table, StackOptions options, Bench& bench,
-                     const Progress& progress) {
-  options.chart = Chart::half;
-  double before = 0;
-  for (const Interpolation interpolation : {Interpolation::displacement, Interpolation::blend}) {
-    options.interpolation = interpolation;
-    const auto start = Clock::now();
-    const auto sampler = std::make_shared<const Sampler>(table, options, [&](double done) { progress(before + done / 2); });
-    bench.add<Sampler>(to_string(interpolation), "half", stack_params(sampler->stack()), seconds_since(start), sampler);
-    before += 0.5;
-  }
-}
+/// What Sampler does by default, and the smallest compact BSDF of ten times the variance. Everything that was
+/// measured on the way becomes a point.
+void add_compact(const std::shared_ptr<const BrdfTable>& table, Bench& bench, std::vector<FrontPoint>& points,
+                 const Progress& progress) {
+  const auto add_points = [&](const CompactChoice& choice, bool chosen) {
+    for (std::size_t k = 0; k < choice.tried.size(); ++k) {
+      points.push_back(front_point(choice.tried[k]));
+      points.back().chosen = chosen && k == choice.chosen;
+    }
+  };
+  auto start = Clock::now();
+  const CompactChoice fine = fit_compact(*table, {}, [&](double done) { progress(done / 2); });
+  const auto sampler = std::make_shared<const Sampler>(table, fine.best().diagrams, Interpolation::blend);
+  nlohmann::json params = stack_params(sampler->stack());
+  params["default"] = true;
+  bench.add<Sampler>("blend", to_string(sampler->stack().chart()), params, seconds_since(start), sampler);
+  add_points(fine, false);
 
-/// Says in the params which stack `gonio convert --chart auto` takes: the one with the smaller mean
-/// relvar at rating_angles.
-void mark_choice(std::vector<MethodReport>& methods) {
-  MethodReport* best = nullptr;
-  double least = 0;
-  for (MethodReport& m : methods) {
-    const bool candidate = (m.id == "displacement" && m.chart == "outgoing") || (m.id == "blend" && m.chart == "half");
-    if (!candidate) continue;
-    double mean = 0;
-    for (const auto& q : m.angles)
-      if (q.theta_i < 80.5 * pi<double> / 180) mean += q.relvar / std::size(rating_angles);
-    m.params["mean_relvar"] = mean;
-    m.params["chart_auto"] = false;
-    if (!best || mean < least) best = &m, least = mean;
-  }
-  if (best) best->params["chart_auto"] = true;
+  start = Clock::now();
+  CompactOptions options;
+  options.max_variance = compact_variance;
+  const CompactChoice small = fit_compact(*table, options, [&](double done) { progress(0.5 + done / 2); });
+  const CompactFit& best = small.best();
+  const auto compact = std::make_shared<const AgainstTable>(AgainstTable{table, best.bsdf()});
+  params = stack_params(compact->bsdf);
+  params["eval_error"] = best.quality.eval_error;
+  params["albedo_error"] = best.quality.albedo_error;
+  bench.add<CompactBsdf, AgainstTable>("compact", to_string(best.diagrams.chart), params, seconds_since(start), compact->bsdf, compact);
+  add_points(small, true);
 }
 
 MaterialReport measure_stack_file(const std::filesystem::path& path, const Progress& progress) {
   const StackFile file = load_stack(path);
   MaterialReport material{file.name, path.string(), "stack", std::filesystem::file_size(path), {}};
   const auto start = std::chrono::steady_clock::now();
-  const auto sampler = std::make_shared<const Sampler>(load_sampler(path));
+  const auto bsdf = std::make_shared<const CompactBsdf>(load_compact(path));
   const std::chrono::duration<double> build = std::chrono::steady_clock::now() - start;
-  nlohmann::json params = stack_params(sampler->stack());
+  nlohmann::json params = stack_params(*bsdf);
   params["self_contained"] = true;
   Bench bench;
-  bench.add<Sampler>(to_string(file.interpolation), to_string(file.diagrams.chart), params, build.count(), sampler);
+  bench.add<CompactBsdf>(to_string(file.interpolation), to_string(file.diagrams.chart), params, build.count(), bsdf);
   bench.run(material, progress);
-  material.stack = sampler->stack();
+  material.stack.emplace(file.diagrams, file.interpolation);
   return material;
 }
 
@@ -227,11 +291,12 @@ MaterialReport measure_material(const std::filesystem::path& path, const ReportO
     const auto sampler = std::make_shared<const Sampler>(table, grid, interpolation);
     bench.add<Sampler>(to_string(interpolation), "outgoing", stack_params(sampler->stack()), build.count(), sampler);
   }
-  add_half_stacks(table, options.stack, bench, [&](double done) { progress(building * (1 + 2 * done) / 3); });
-  if (const std::size_t bytes = add_lobes(table, material, bench); bytes > 0)
+  std::vector<FrontPoint> points;
+  add_compact(table, bench, points, [&](double done) { progress(building * (1 + 2 * done) / 3); });
+  if (const std::size_t bytes = add_lobes(table, material, bench, points); bytes > 0)
     add_small_stack(table, bytes, bench);
   bench.run(material, [&](double done) { progress(building + (1 - building) * done); });
-  mark_choice(material.methods);
+  material.front = front_json(points);
   material.stack.emplace(grid, Interpolation::displacement);
   return material;
 }

@@ -5,7 +5,10 @@
 #include <gonio/tools/options.h>
 #include <gonio/tools/progress.h>
 #include <gonio/tools/report/measure_material.h>
+#include <gonio/tools/report/merge.h>
+#include <gonio/tools/report/provenance.h>
 #include <gonio/tools/report/write_report.h>
+#include <gonio/tools/stability/summary.h>
 
 #include <filesystem>
 #include <iostream>
@@ -21,21 +24,25 @@ namespace {
 LightReport measure_light(const std::filesystem::path& path) {
   Deviations ignored;
   const Luminaire light = load_any_light(path, {}, ignored);
-  return {path.stem().string(), path.string(), light.format, std::filesystem::file_size(path), flux(light.diagram), emission_quality(light.diagram)};
+  return {path.stem().string(), path.string(), light.format, std::filesystem::file_size(path), sha256_of(path), flux(light.diagram), emission_quality(light.diagram)};
 }
 
 }  // namespace
 
-void add_report(CLI::App& app) {
+void add_report(CLI::App& app, const std::vector<std::string>& arguments) {
   struct Options {
     std::vector<std::filesystem::path> inputs;
     std::filesystem::path directory;
+    std::filesystem::path stability;
+    bool merge = false;
     ReportOptions report;
   };
   auto options = std::make_shared<Options>();
   CLI::App* verb = app.add_subcommand("report", "Measure how well materials are sampled, by every method");
   verb->add_option("IN", options->inputs, "Tables (MERL, RGL, MBSDF), stack files, fit.json, or luminaires (IES, EULUMDAT, light EXR)")->required();
   verb->add_option("-o,--output", options->directory, "Folder for report.html, report.md and report.json")->required();
+  verb->add_option("--stability", options->stability, "A stability.json of gonio stability, to be shown as well");
+  verb->add_flag("--merge", options->merge, "IN are report.json files: writes them as one report, without measuring");
   verb->add_option_function<std::string>(
           "--grid",
           [options](const std::string& text) {
@@ -52,9 +59,17 @@ void add_report(CLI::App& app) {
       "displacement_small, a stack of about the lobes' bytes. Luminaires: relative variance and speed of emission.\n\n"
       "Examples:\n"
       "  gonio report chrome.binary -o report\n"
-      "  gonio report measured/*.bsdf --bytes 128KiB -o report");
-  verb->callback([options] {
+      "  gonio report measured/*.bsdf --bytes 128KiB -o report\n"
+      "  gonio report --merge reports/*/report.json -o overview");
+  verb->callback([options, arguments] {
+    if (options->merge) {
+      write_merged_report(options->directory, options->inputs);
+      std::cout << "written: " << (options->directory / "report.html").string() << ", report.md, report.json\n";
+      return;
+    }
     Report report;
+    report.command = command_line(arguments);
+    if (!options->stability.empty()) report.stability = read_stability(options->stability);
     report.machine = this_machine();
     for (std::size_t k = 0; k < options->inputs.size(); ++k) {
       ProgressLine line("report " + options->inputs[k].filename().string() + " (" + std::to_string(k + 1) + " of " +
@@ -65,6 +80,7 @@ void add_report(CLI::App& app) {
       }
       report.materials.push_back(
           measure_material(options->inputs[k], options->report, [&](double share) { line.update(share); }));
+      report.materials.back().sha256 = sha256_of(options->inputs[k]);
     }
     write_report(options->directory, report);
     print_summary(std::cout, report);

@@ -27,6 +27,7 @@ struct MethodReport {
   std::size_t bytes = 0;   ///< all memory that the sampler holds, the source table apart
   double build_seconds = 0;
   CallTimes ns{};
+  std::optional<CallTimes> ns_batch{};  ///< per look-up of a batch; none for methods that have no batch form
   std::vector<proof::Quality> angles;
   proof::Coherence coherence;      ///< at coherence_angle
   proof::Convergence convergence;  ///< at coherence_angle
@@ -39,6 +40,8 @@ struct MaterialReport {
   std::vector<MethodReport> methods;
   nlohmann::json fits = nlohmann::json::array();  ///< of one, two and three lobes; empty for a stack file
   nlohmann::json curves = nlohmann::json::array();  ///< table_curves() at curve_angles
+  nlohmann::json front = nlohmann::json::array();  ///< stacks of several sizes: objects with id, bytes, ns, relvar, eval_error (null if it needs its table), chosen
+  std::string sha256{};  ///< of the file
   std::vector<WeightRow> weights{};     ///< of the continuous stacks, for the figure; not part of the JSON
   std::optional<Stack<float>> stack{};  ///< of `displacement`, for the figure; not part of the JSON
 };
@@ -47,6 +50,7 @@ struct MaterialReport {
 struct LightReport {
   std::string name, source, format;
   std::uint64_t source_bytes = 0;
+  std::string sha256;
   double flux;  ///< [lm], by quadrature of the bilinear diagram
   std::vector<EmissionQuality> methods;
 };
@@ -58,8 +62,10 @@ struct Machine {
 
 struct Report {
   Machine machine;
+  std::string command{};  ///< what made it, as typed
   std::vector<MaterialReport> materials;
   std::vector<LightReport> lights;
+  nlohmann::json stability = nullptr;  ///< of `gonio stability`, if it was given
 };
 
 /// The incident angles of every report, in degrees.

@@ -2,8 +2,10 @@
 
 #include <gonio/tools/report/compare_lobes.h>
 #include <gonio/tools/report/grid_figure.h>
+#include <gonio/tools/report/timing.h>
 #include <gonio/tools/report/verdict.h>
 #include <gonio/tools/report/write_page.h>
+#include <gonio/tools/stability/summary.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +13,7 @@
 #include <ostream>
 #include <sstream>
 
+#include <gonio/fitting/fit.h>
 #include <gonio/mapping/atomic_file.h>
 #include <gonio/mapping/concentric.h>
 #include <gonio/mapping/error.h>
@@ -21,6 +24,12 @@ namespace {
 double degrees(double radians) { return radians * 180 / pi<double>; }
 
 nlohmann::json rgb(const glm::dvec3& v) { return {v.r, v.g, v.b}; }
+
+nlohmann::json to_json(const CallTimes& one, const std::optional<CallTimes>& batch) {
+  nlohmann::json ns = {{"sample", one.sample}, {"pdf", one.pdf}, {"eval", one.eval}};
+  if (batch) ns["sample_batch"] = batch->sample, ns["pdf_batch"] = batch->pdf, ns["eval_batch"] = batch->eval;
+  return ns;
+}
 
 nlohmann::json to_json(const proof::Quality& q) {
   return {{"theta_i_deg", std::round(degrees(q.theta_i) * 1e6) / 1e6},
@@ -59,22 +68,27 @@ void write_overview(std::ostream& out, const Report& report) {
 
 void write_markdown(std::ostream& out, const Report& report) {
   out << "# Sampling quality\n\ngonio " GONIO_VERSION ", " << report.machine.cpu << ", " << report.machine.compiler << ", "
-      << report.machine.threads << " threads.\n\n"
+      << report.machine.threads << " threads. Made by\n\n    " << report.command << "\n\n"
       << "`relvar` is Var[w] / E[w]^2 of the luminance weight w = f_r cos(theta_o) / pdf on a jittered 256 x 256 grid: the "
          "variance of a white-furnace estimate, 0 is perfect, and the number of samples for a given noise is in proportion to it. "
          "Times are nanoseconds a call on one thread. A chi-square p below "
       << number(report_significance(report), 2) << " (0.01 for the whole report, Sidak) says that draws do not follow the pdf.\n";
   write_overview(out, report);
   for (const MaterialReport& material : report.materials) {
-    out << "\n## " << material.name << "\n\n" << material.format << ", " << kib(material.source_bytes) << ", `" << material.source << "`\n\n**" << verdict(material) << "**\n\n![grid](" << material.name << ".svg)\n\n"
-        << "| method | chart | bytes | build s | sample ns | pdf ns | eval ns | efficiency |";
+    out << "\n## " << material.name << "\n\n" << material.format << ", " << kib(material.source_bytes) << ", `" << material.source << "`, SHA-256 `" << material.sha256 << "`\n\n**" << verdict(material) << "**\n\n![grid](" << material.name << ".svg)\n\n"
+        << "| method | chart | bytes | build s | sample ns | pdf ns | eval ns | in batches: sample ns | pdf ns | eval ns | efficiency |";
     for (const double angle : report_angles) out << " relvar " << angle << "° |";
-    out << "\n|---|---|---|---|---|---|---|---|";
+    out << "\n|---|---|---|---|---|---|---|---|---|---|---|";
     for (std::size_t k = 0; k < std::size(report_angles); ++k) out << "---|";
     out << '\n';
     for (const MethodReport& m : material.methods) {
       out << "| " << m.id << " | " << m.chart << " | " << kib(m.bytes) << " | " << number(m.build_seconds, 2) << " | " << number(m.ns.sample)
-          << " | " << number(m.ns.pdf) << " | " << number(m.ns.eval) << " | " << number(efficiency(m)) << " |";
+          << " | " << number(m.ns.pdf) << " | " << number(m.ns.eval) << " | ";
+      if (m.ns_batch)
+        out << number(m.ns_batch->sample) << " | " << number(m.ns_batch->pdf) << " | " << number(m.ns_batch->eval);
+      else
+        out << "- | - | -";
+      out << " | " << number(efficiency(m)) << " |";
       for (const auto& q : m.angles) out << ' ' << number(q.relvar, 2) << " |";
       out << '\n';
     }
@@ -85,6 +99,14 @@ void write_markdown(std::ostream& out, const Report& report) {
       out << "| " << m.id << " | " << number(m.coherence.stretch_p50) << " | " << number(m.coherence.stretch_p99) << " | "
           << m.coherence.tears + m.coherence.folds << " | " << number(m.convergence.qmc_slope, 2) << " | "
           << number(m.convergence.mc_slope, 2) << " |\n";
+    if (!material.front.empty()) {
+      out << "\nWhat memory buys:\n\n| stack | bytes | ns | relvar | evaluation error | kept |\n|---|---|---|---|---|---|\n";
+      for (const nlohmann::json& point : material.front) {
+        out << "| " << point["id"].get<std::string>() << " | " << kib(point["bytes"]);
+        for (const char* key : {"ns", "relvar", "eval_error"}) out << " | " << (point[key].is_number() ? number(point[key]) : "-");
+        out << " | " << (point["chosen"] == true ? "yes" : "") << " |\n";
+      }
+    }
     write_lobes(out, material);
     out << "\n| method | θi | max weight | invalid | pdf integral | albedo sampled | albedo table | χ² p |\n|---|---|---|---|---|---|---|---|\n";
     for (const MethodReport& m : material.methods) {
@@ -98,10 +120,14 @@ void write_markdown(std::ostream& out, const Report& report) {
     }
   }
   for (const LightReport& light : report.lights) {
-    out << "\n## " << light.name << "\n\n" << light.format << ", `" << light.source << "`, " << number(light.flux, 6)
+    out << "\n## " << light.name << "\n\n" << light.format << ", `" << light.source << "`, SHA-256 `" << light.sha256 << "`, " << number(light.flux, 6)
         << " lm. `relvar` is that of emission: w is intensity / pdf.\n\n| method | flux, lm | relvar | ns a draw |\n|---|---|---|---|\n";
     for (const EmissionQuality& q : light.methods)
       out << "| " << q.method << " | " << number(q.flux, 6) << " | " << number(q.relvar, 2) << " | " << number(q.nanoseconds_per_draw) << " |\n";
+  }
+  if (!report.stability.is_null()) {
+    out << "\n## Where methods fail\n\nTextbook formulas in float beside the library's own (`gonio-`), judged in long double.\n\n";
+    write_stability_summary(out, report.stability);
   }
 }
 
@@ -126,7 +152,7 @@ nlohmann::json to_json(const Report& report) {
                          {"params", m.params},
                          {"bytes", m.bytes},
                          {"build_seconds", m.build_seconds},
-                         {"ns", {{"sample", m.ns.sample}, {"pdf", m.ns.pdf}, {"eval", m.ns.eval}}},
+                         {"ns", to_json(m.ns, m.ns_batch)},
                          {"angles", std::move(angles)},
                          {"coherence",
                           {{"stretch_p50", m.coherence.stretch_p50},
@@ -144,10 +170,12 @@ nlohmann::json to_json(const Report& report) {
                          {"source", material.source},
                          {"format", material.format},
                          {"source_bytes", material.source_bytes},
+                         {"sha256", material.sha256},
                          {"methods", std::move(methods)},
                          {"fits", material.fits},
                          {"curves", material.curves},
                          {"verdict", verdict(material)}});
+    if (!material.front.empty()) materials.back()["front"] = material.front;
     if (const auto comparison = compare_lobes(material))
       materials.back()["lobes_against_stack"] = to_json(*comparison);
   }
@@ -156,12 +184,16 @@ nlohmann::json to_json(const Report& report) {
     nlohmann::json methods = nlohmann::json::array();
     for (const EmissionQuality& q : light.methods)
       methods.push_back({{"id", q.id}, {"flux", q.flux}, {"relvar", q.relvar}, {"ns", {{"sample", q.nanoseconds_per_draw}}}});
-    lights.push_back({{"name", light.name}, {"source", light.source}, {"format", light.format}, {"source_bytes", light.source_bytes}, {"flux", light.flux}, {"methods", std::move(methods)}});
+    lights.push_back({{"name", light.name}, {"source", light.source}, {"format", light.format}, {"source_bytes", light.source_bytes}, {"sha256", light.sha256}, {"flux", light.flux}, {"methods", std::move(methods)}});
   }
-  return {{"gonio_version", GONIO_VERSION},
-          {"machine", {{"cpu", report.machine.cpu}, {"compiler", report.machine.compiler}, {"threads", report.machine.threads}}},
-          {"materials", std::move(materials)},
-          {"lights", std::move(lights)}};
+  nlohmann::json json = {{"gonio_version", GONIO_VERSION},
+                         {"command", report.command},
+                         {"machine", {{"cpu", report.machine.cpu}, {"compiler", report.machine.compiler}, {"threads", report.machine.threads}}},
+                         {"seeds", {{"measures", proof::MeasureOptions().seed}, {"times", timing_seed}, {"fits", FitOptions().seed}}},
+                         {"materials", std::move(materials)},
+                         {"lights", std::move(lights)}};
+  if (!report.stability.is_null()) json["stability"] = report.stability;
+  return json;
 }
 
 void write_report(const std::filesystem::path& directory, const Report& report) {

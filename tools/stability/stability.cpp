@@ -6,6 +6,7 @@
 #include <gonio/tools/progress.h>
 #include <gonio/tools/stability/figures.h>
 #include <gonio/tools/stability/measure_row.h>
+#include <gonio/tools/stability/summary.h>
 
 #include <algorithm>
 #include <atomic>
@@ -78,27 +79,6 @@ nlohmann::json to_json(const std::vector<StabilityRow>& rows) {
   return json;
 }
 
-/// One line for each variant: how often it fails, its worst values and why.
-void write_summary(std::ostream& out, const std::vector<StabilityRow>& rows) {
-  out << "| variant | fails on | largest error [ulp] | of | largest bias | smallest chi2 p | why |\n|---|---|---|---|---|---|---|\n";
-  for (const std::string& name : variant_names()) {
-    int count = 0, failures = 0;
-    double error = 0, bias = 0, p = 1;
-    const StabilityRow* any = nullptr;
-    for (const StabilityRow& r : rows) {
-      if (r.variant != name) continue;
-      any = &r;
-      ++count;
-      failures += r.fails();
-      error = std::max(error, r.max_error);
-      if (std::abs(r.bias) > std::abs(bias)) bias = r.bias;
-      p = std::min(p, r.chi2_p);
-    }
-    out << "| " << name << " | " << failures << " of " << count << " | " << number(error) << " | " << any->error_of << " | " << number(100 * bias)
-        << " % | " << number(p) << " | " << any->why << " |\n";
-  }
-}
-
 void write_markdown(std::ostream& out, const std::vector<StabilityRow>& rows) {
   out << "# Where methods fail\n\ngonio " GONIO_VERSION ". Textbook formulas in float beside the library's own (`gonio-`), judged in long double.\n\n"
          "A variant fails on an input if its largest error exceeds the bound in the table below, if an estimate with its draws is off by more\n"
@@ -106,7 +86,7 @@ void write_markdown(std::ostream& out, const std::vector<StabilityRow>& rows) {
          "outside the support, or chi-square p below "
       << number(proof::sidak(0.01, static_cast<int>(rows.size())))
       << " (0.01 for all rows together, Sidak). An error of 8.4e+06 ulp is an answer\nwithout a correct digit.\n\n![chart](stability.svg)\n\n";
-  write_summary(out, rows);
+  write_stability_summary(out, to_json(rows));
   out << "\n## All rows\n\n| input | variant | error [ulp] | bound | bias | standard error | chi2 p | fails by |\n|---|---|---|---|---|---|---|---|\n";
   for (const StabilityRow& r : rows) {
     std::string failed;
@@ -135,12 +115,13 @@ void stability(const std::filesystem::path& directory) {
     ProgressLine line("stability");
     rows = measure(line);
   }
-  write_stream_atomically(directory / "stability.json", [&](std::ostream& out) { out << to_json(rows).dump(1) << '\n'; });
+  const nlohmann::json json = to_json(rows);
+  write_stream_atomically(directory / "stability.json", [&](std::ostream& out) { out << json.dump(1) << '\n'; });
   write_stream_atomically(directory / "stability.md", [&](std::ostream& out) { write_markdown(out, rows); });
   write_chart(directory / "stability.svg", rows);
   write_figure_3(directory / "figure3.svg");
   write_figure_6(directory / "figure6.svg");
-  write_summary(std::cout, rows);
+  write_stability_summary(std::cout, json);
   std::cout << "written: " << (directory / "stability.md").string() << ", stability.json, stability.svg, figure3.svg, figure6.svg\n";
 }
 

@@ -9,11 +9,24 @@ function spec_of(o, height, parts) {
     config: {
       axis: {labelColor: c.dim, titleColor: c.text, gridColor: c.line, domainColor: c.dim, tickColor: c.dim, gridOpacity: 0.6,
         labelFontSize: 11, titleFontSize: 12, titleFontWeight: 'normal', labelFont: 'sans-serif', titleFont: 'sans-serif'},
-      text: {font: 'sans-serif'},
+      text: {font: 'sans-serif'}, legend: {labelColor: c.text, labelFont: 'sans-serif', labelFontSize: 11, labelLimit: 300},
     },
-    ...parts,
+    ...parts, keys: undefined, lines: undefined, usermeta: (parts.keys || []).map(k => mark_html(k, parts.lines) + k.label),
+    ...(o.keys && parts.keys ? with_keys(o, parts) : {}),
   };
 }
+
+// A saved chart stands alone: it names its series. `keys` are [{label, color, shape, dash}].
+function with_keys(o, {keys, lines, scales = [], autosize}) {
+  const domain = keys.map(k => k.label), scale = (name, range) => ({name, type: 'ordinal', domain, range});
+  const symbols = lines ? {stroke: 'key-color', strokeDash: 'key-dash', symbolType: 'stroke'} : {fill: 'key-color', shape: 'key-shape'};
+  return {
+    scales: [...scales, scale('key-color', keys.map(k => k.color)), scale('key-shape', keys.map(k => k.shape)), scale('key-dash', keys.map(k => k.dash))],
+    legends: [{...symbols, orient: 'bottom', columns: Math.max(1, Math.floor(o.width / 190)), symbolSize: lines ? 300 : 70, symbolStrokeWidth: lines ? 2 : 0}],
+    ...(autosize === 'none' ? {autosize: 'pad'} : {}),
+  };
+}
+const keys_of = methods => methods.map(m => ({label: title_of(m), ...style_of(key_of(m))}));
 
 // Powers of ten and, in a short domain, round numbers between them.
 function log_ticks(low, high) {
@@ -57,34 +70,36 @@ function speed_accuracy(o) {
   if (!rows.length) return null;
   rows.sort((a, b) => a.x - b.x || a.y - b.y);
   const xs = log_domain(rows.map(r => r.x), 1.5), ys = log_domain(rows.map(r => r.y), 2);
-  const front = [];
-  for (const r of rows) if (!front.length || r.y < front[front.length - 1].y) front.push(r);
-  const stairs = [];
-  front.forEach((r, k) => {
-    stairs.push({x: r.x, y: k ? front[k - 1].y : ys[1]}, {x: r.x, y: r.y});
-  });
-  stairs.push({x: xs[1], y: front[front.length - 1].y});
-  // Equal efficiency: y = 1 / (E x) - 0.001, two lines a decade.
-  const lines = [];
+  const lines = [], shares = [];
   const label = paint => ({type: 'text', from: {data: 'points'}, encode: {enter: {text: {field: 'datum.label'}, fontSize: {value: 11}, ...paint}},
-    transform: [{type: 'label', size: {signal: '[width, height]'}, offset: [4], anchor: ['right', 'left', 'top', 'bottom', 'top-right', 'bottom-right', 'top-left', 'bottom-left']}]});
+    transform: [{type: 'label', size: {signal: '[width, height]'}, offset: [4], avoidMarks: ['stairs'], anchor: ['right', 'left', 'top', 'bottom', 'top-right', 'bottom-right', 'top-left', 'bottom-left']}]});
   const efficiency = (x, y) => 1 / (x * (y + 0.001));
-  for (let e = Math.ceil(2 * Math.log10(efficiency(xs[1], ys[1]))) / 2; e <= Math.log10(efficiency(xs[0], ys[0])); e += 0.5)
-    for (let k = 0; k <= 60; ++k) {
-      const x = xs[0] * (xs[1] / xs[0]) ** (k / 60), y = 1 / (10 ** e * x) - 0.001;
-      if (y > ys[0] / 20) lines.push({e, x, y});
+  // Equal efficiency E: y = 1 / (E x) - 0.001, from the best method's down, two lines a decade.
+  const best = Math.max(...rows.map(r => efficiency(r.x, r.y))), least = efficiency(xs[1], ys[1]);
+  for (let k = 0; best * 10 ** (-k / 2) > least; ++k) {
+    const e = best * 10 ** (-k / 2), on = x => 1 / (e * x) - 0.001;
+    for (let n = 0; n <= 60; ++n) {
+      const x = xs[0] * (xs[1] / xs[0]) ** (n / 60);
+      if (on(x) > ys[0] / 20) lines.push({e, x, y: on(x)});
     }
+    // Its label stands where the line enters the chart.
+    const text = `${number(100 * 10 ** (-k / 2))} %`, top = ys[1] * (ys[0] / ys[1]) ** 0.06;
+    if (k % 2 === 0) shares.push(on(xs[0]) < top ? {x: xs[0], y: on(xs[0]), text} : {x: 1 / (e * (top + 0.001)), y: top, text});
+  }
   return spec_of(o, 400, {
-    data: [{name: 'rows', values: rows}, {name: 'front', values: stairs}, {name: 'lines', values: lines}],
+    keys: keys_of(o.methods),
+    data: [{name: 'rows', values: rows}, {name: 'front', values: pareto_stairs(rows, xs, ys)}, {name: 'lines', values: lines}, {name: 'shares', values: shares}],
     scales: [{name: 'x', type: 'log', domain: xs, range: 'width'}, {name: 'y', type: 'log', domain: ys, range: 'height'}],
     axes: [log_axis('bottom', 'x', xs, `${o.time_title}, ns`), log_axis('left', 'y', ys, 'relative variance')],
     marks: [
       {type: 'group', clip: true, encode: {enter: {width: {signal: 'width'}, height: {signal: 'height'}}}, marks: [
         {type: 'group', from: {facet: {name: 'iso', data: 'lines', groupby: 'e'}}, marks: [{type: 'line', from: {data: 'iso'}, encode: {enter: {
           x: {scale: 'x', field: 'x'}, y: {scale: 'y', field: 'y'}, stroke: {value: o.colors.dim}, strokeWidth: {value: 0.8}, strokeDash: {value: [2, 4]}}}}]},
-        {type: 'line', from: {data: 'front'}, encode: {enter: {x: {scale: 'x', field: 'x'}, y: {scale: 'y', field: 'y'},
-          stroke: {value: o.colors.text}, strokeWidth: {value: 1.2}, opacity: {value: 0.7}}}},
+        {type: 'text', from: {data: 'shares'}, encode: {enter: {x: {scale: 'x', field: 'x'}, y: {scale: 'y', field: 'y'}, text: {field: 'text'},
+          fontSize: {value: 10}, fill: {value: o.colors.dim}, baseline: {value: 'bottom'}, dx: {value: 3}, dy: {value: -2}}}},
       ]},
+      {type: 'line', name: 'stairs', clip: true, from: {data: 'front'}, encode: {enter: {x: {scale: 'x', field: 'x'}, y: {scale: 'y', field: 'y'},
+        stroke: {value: o.colors.text}, strokeWidth: {value: 1.2}, opacity: {value: 0.7}}}},
       {type: 'symbol', name: 'points', from: {data: 'rows'}, encode: {enter: {x: {scale: 'x', field: 'x'}, y: {scale: 'y', field: 'y'}, fill: {field: 'color'},
         fillOpacity: {value: 0.8}, stroke: {value: o.colors.back}, shape: {field: 'shape'}, size: {field: 'size'}, tooltip: {field: 'tip'}}}},
       label({stroke: {value: o.colors.back}, strokeWidth: {value: 3}}), label({fill: {value: o.colors.text}}),  // a halo first
@@ -100,6 +115,7 @@ function over_angles(o, field, title, least) {
   if (!rows.length) return null;
   const ys = log_domain(rows.map(r => r.y));
   return spec_of(o, 320, {
+    keys: keys_of(o.methods),
     data: [{name: 'rows', values: rows}],
     scales: [{name: 'x', domain: [0, 90], range: 'width'}, {name: 'y', type: 'log', domain: ys, range: 'height'}],
     axes: [{orient: 'bottom', scale: 'x', title: 'θi, degrees', values: [0, 15, 30, 45, 60, 75, 90], grid: true}, log_axis('left', 'y', ys, title)],
@@ -125,6 +141,7 @@ function weight_histogram(o) {
   if (!rows.length) return null;
   const xs = [10 ** -1.5, 10 ** 1.5], ys = [5e-5, 1];
   return spec_of(o, 320, {
+    keys: keys_of(o.methods), lines: true,
     data: [{name: 'rows', values: rows}],
     scales: [{name: 'x', type: 'log', domain: xs, range: 'width'}, {name: 'y', type: 'log', domain: ys, range: 'height'}],
     axes: [{...log_axis('bottom', 'x', xs, 'weight / mean weight'), values: [0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20]}, {...log_axis('left', 'y', ys, 'share of draws'), format: '~p'}],
@@ -136,11 +153,17 @@ function weight_histogram(o) {
 function polar_diagram(o) {
   const table = curve_of(o.material, o.theta_i);
   if (!table) return null;
-  const curves = [{key: 'table', color: o.colors.text, dash: [], strokeWidth: 7, values: table.table}];
+  const curves = [{key: 'table', label: 'table', color: o.colors.text, shape: 'circle', dash: [], strokeWidth: 7, values: table.table}];
+  const add = (key, label, strokeWidth, values) => values && curves.push({...style_of(key), key, label, strokeWidth, values});
+  const lobes = o.methods.map(m => m.id).filter(id => /^lobes\d$/.test(id));
   for (const m of o.methods) {
-    const curve = curve_of(m, o.theta_i);
-    if (curve) curves.push({...style_of(key_of(m)), key: key_of(m), strokeWidth: 1.6, values: curve.pdf});
+    const stack = ['displacement', 'blend', 'compact'].includes(m.id);
+    if (o.diagram === 'pdf' || stack) add(key_of(m), title_of(m), 1.6, (curve_of(m, o.theta_i) || {}).pdf);
   }
+  if (o.diagram === 'fits')
+    (o.material.fits || []).forEach((fit, k) => {
+      if (lobes.includes(`lobes${k + 1}`)) add(`lobes${k + 1}`, `fit of ${k + 1}`, 2, (curve_of(fit, o.theta_i) || {}).model);
+    });
   const peak = Math.max(...table.table) * 1.15, decades = 4;
   if (!(peak > 0)) return null;
   const radius = {
@@ -171,6 +194,7 @@ function polar_diagram(o) {
   const at = (x, y) => ({x: {signal: `width / 2 + ${unit} * ${x}`}, y: {signal: `${unit * 1.12} - ${unit} * ${y}`}});
   return spec_of({...o, width}, height, {
     autosize: 'none',
+    keys: curves, lines: true,
     data: [{name: 'rows', values: rows}, {name: 'rings', values: rings}, {name: 'spokes', values: spokes}, {name: 'labels', values: labels}],
     marks: [
       {type: 'group', from: {facet: {name: 'ring', data: 'rings', groupby: 'ring'}}, marks: [{type: 'line', from: {data: 'ring'}, encode: {enter: {
@@ -242,6 +266,7 @@ function convergence(o) {
   if (!rows.length) return null;
   const xs = log_domain(rows.map(r => r.x), 1.1), ys = log_domain(rows.concat(random).map(r => r.y));
   return spec_of(o, 320, {
+    keys: keys_of(o.methods),
     data: [{name: 'rows', values: rows}, {name: 'random', values: random}],
     scales: [{name: 'x', type: 'log', domain: xs, range: 'width'}, {name: 'y', type: 'log', domain: ys, range: 'height'}],
     axes: [{...log_axis('bottom', 'x', xs, 'samples'), format: '~s'}, log_axis('left', 'y', ys, 'relative error')],
@@ -267,12 +292,64 @@ function overview_chart(o) {
   }
   if (!rows.length) return null;
   const names = [...new Set(rows.map(r => r.material))], xs = [Math.min(0.1, ...rows.map(r => r.x)) / 1.3, 1.25];
+  const shown = new Map();
+  for (const m of o.report.materials.flatMap(material => material.methods)) if (!o.hidden.has(key_of(m))) shown.set(key_of(m), m);
   return spec_of(o, 60 + 26 * names.length, {
+    keys: keys_of([...shown.values()]),
     data: [{name: 'rows', values: rows}],
     scales: [{name: 'x', type: 'log', domain: xs, range: 'width'}, {name: 'y', type: 'point', domain: names, range: 'height', padding: 0.5}],
-    axes: [{...log_axis('bottom', 'x', xs, 'efficiency / best efficiency of the material'), values: log_ticks(xs[0], 1)},
+    axes: [{...log_axis('bottom', 'x', xs, 'efficiency / best'), values: log_ticks(xs[0], 1)},
       {orient: 'left', scale: 'y', grid: true, labelLimit: o.width / 3}],
     marks: [{type: 'symbol', from: {data: 'rows'}, encode: {enter: {x: {scale: 'x', field: 'x'}, y: {scale: 'y', field: 'material'}, fill: {field: 'color'},
       shape: {field: 'shape'}, size: {value: 90}, fillOpacity: {value: 0.85}, stroke: {value: o.colors.back}, tooltip: {field: 'tip'}}}}],
   });
+}
+
+// What quality costs in memory: relative variance and the error of evaluation against bytes. `front` of a
+// material: [{id, bytes, ns, relvar, eval_error, chosen}].
+function memory_front(o) {
+  const points = (o.material.front || []).filter(p => p.bytes > 0).map(p => ({...p, id: p.id.replace('/', ' ')}));
+  const panels = [{field: 'relvar', title: 'relative variance'}, {field: 'eval_error', title: 'evaluation error'}]
+    .map(panel => ({...panel, points: points.filter(p => p[panel.field] > 0)})).filter(panel => panel.points.length);
+  if (!panels.length) return null;
+  const columns = o.width > 560 ? panels.length : 1, left = 66, gap = 16, height = 260, below = 50, above = 12;
+  const width = o.width / columns - left - gap, xs = log_domain(points.map(p => p.bytes), 1.6);
+  const ids = [...new Set(points.map(p => p.id))];
+  const groups = panels.map((panel, k) => {
+    const rows = panel.points.map(p => ({...style_of(p.id), x: p.bytes, y: p[panel.field], label: p.chosen ? 'kept' : '', chosen: Boolean(p.chosen),
+      tip: {method: title_of_key(p.id), memory: bytes_text(p.bytes), [panel.title]: number(p[panel.field]), ...(p.ns ? {time: `${number(p.ns)} ns`} : {}), ...(p.chosen ? {chosen: 'yes'} : {})}}));
+    rows.sort((a, b) => a.x - b.x || a.y - b.y);
+    const ys = log_domain(rows.map(r => r.y), 1.8), at = {x: {scale: 'x', field: 'x'}, y: {scale: 'y', field: 'y'}};
+    const label = paint => ({type: 'text', from: {data: 'points'}, encode: {enter: {text: {field: 'datum.label'}, fontSize: {value: 11}, ...paint}},
+      transform: [{type: 'label', size: [width, height], offset: [10], avoidMarks: ['stairs'], anchor: ['top-right', 'bottom-left', 'right', 'left', 'top', 'bottom']}]});
+    return {
+      type: 'group', encode: {enter: {x: {value: left + (k % columns) * (left + width + gap)}, y: {value: above + Math.floor(k / columns) * (height + below + above)},
+        width: {value: width}, height: {value: height}}},
+      signals: [{name: 'width', value: width}, {name: 'height', value: height}],
+      data: [{name: 'rows', values: rows}, {name: 'front', values: pareto_stairs(rows, xs, ys)}, {name: 'chosen', values: rows.filter(r => r.chosen)}],
+      scales: [{name: 'x', type: 'log', domain: xs, range: [0, width]}, {name: 'y', type: 'log', domain: ys, range: [height, 0]}],
+      axes: [{...log_axis('bottom', 'x', xs, 'memory, KiB'), values: log_ticks(xs[0] / 1024, xs[1] / 1024).map(t => 1024 * t), format: undefined,
+        encode: {labels: {update: {text: {signal: "format(datum.value / 1024, '~g')"}}}}}, log_axis('left', 'y', ys, panel.title)],
+      marks: [
+        {type: 'line', name: 'stairs', clip: true, from: {data: 'front'}, encode: {enter: {...at, stroke: {value: o.colors.text}, strokeWidth: {value: 1.2}, opacity: {value: 0.7}}}},
+        {type: 'symbol', from: {data: 'chosen'}, encode: {enter: {...at, size: {value: 420}, stroke: {value: o.colors.text}, strokeWidth: {value: 2}, fill: {value: 'transparent'}}}},
+        {type: 'symbol', name: 'points', from: {data: 'rows'}, encode: {enter: {...at, fill: {field: 'color'}, shape: {field: 'shape'}, size: {value: 90},
+          stroke: {value: o.colors.back}, tooltip: {field: 'tip'}}}},
+        label({stroke: {value: o.colors.back}, strokeWidth: {value: 3}}), label({fill: {value: o.colors.text}}),
+      ],
+    };
+  });
+  return spec_of(o, Math.ceil(panels.length / columns) * (height + below + above), {
+    autosize: 'none', padding: 0, keys: ids.map(id => ({label: title_of_key(id), ...style_of(id)})), marks: groups,
+  });
+}
+
+// Of points sorted by x: the front of those that no other beats in both, as a stair over the chart.
+function pareto_stairs(rows, xs, ys) {
+  const front = [];
+  for (const r of rows) if (!front.length || r.y < front[front.length - 1].y) front.push(r);
+  const stairs = [];
+  front.forEach((r, k) => { stairs.push({x: r.x, y: k ? front[k - 1].y : ys[1]}, {x: r.x, y: r.y}); });
+  stairs.push({x: xs[1], y: front[front.length - 1].y});
+  return stairs;
 }

@@ -1,5 +1,5 @@
-# Writes OUTPUT, a C++ file with the page as two strings: what goes before the report and what after.
-# In: PAGE_DIR (this folder), VEGA_DIR (the modules of libjs-vega), VEGA_LICENCE, LICENCE (of gonio), OUTPUT.
+# Writes OUTPUT, a C++ file with a page as two strings, NAME_head and NAME_tail: what goes before the report and what after.
+# In: NAME, PAGE (its HTML file), SCRIPTS (its scripts, in order), PAGE_DIR (this folder), VEGA_DIR (the modules of libjs-vega), VEGA_LICENCE, LICENCE (of gonio), OUTPUT.
 
 cmake_minimum_required(VERSION 3.25)
 
@@ -23,8 +23,8 @@ file(READ ${PAGE_DIR}/modules.js text)
 string(APPEND vega "${text}")
 
 set(script "'use strict';\n(() => {\n")
-foreach(file methods charts page)
-  file(READ ${PAGE_DIR}/${file}.js text)
+foreach(file ${SCRIPTS})
+  file(READ ${file} text)
   string(APPEND script "${text}\n")
 endforeach()
 string(APPEND script "})();\n")
@@ -40,7 +40,7 @@ foreach(part "gonio|${LICENCE}" "D3, of which Vega's modules contain parts|${PAG
   string(APPEND licences "== ${title} ==\n\n${text}\n")
 endforeach()
 
-file(READ ${PAGE_DIR}/page.html page)
+file(READ ${PAGE} page)
 file(READ ${PAGE_DIR}/page.css style)
 foreach(part style licences vega script)
   if(part STREQUAL "vega" OR part STREQUAL "script")
@@ -58,8 +58,8 @@ string(SUBSTRING "${page}" 0 ${cut} head)
 math(EXPR cut "${cut} + 8")
 string(SUBSTRING "${page}" ${cut} -1 tail)
 file(WRITE ${OUTPUT} "namespace gonio {
-extern const char page_head[], page_tail[];
-const char page_head[] = R\"GONIO_PAGE(${head})GONIO_PAGE\";
-const char page_tail[] = R\"GONIO_PAGE(${tail})GONIO_PAGE\";
+extern const char ${NAME}_head[], ${NAME}_tail[];
+const char ${NAME}_head[] = R\"GONIO_PAGE(${head})GONIO_PAGE\";
+const char ${NAME}_tail[] = R\"GONIO_PAGE(${tail})GONIO_PAGE\";
 }
 ")

@@ -10,6 +10,9 @@ const method_styles = {
   'displacement_small outgoing': ['#2e9bd6', 'triangle-right', [6, 3]],
   'displacement half': ['#009e73', 'cross', []],
   'blend half': ['#7a5bd0', 'triangle-up', []],
+  'blend outgoing': ['#6b8e23', 'triangle-up', [6, 3]],
+  'compact outgoing': ['#b03060', 'circle', []],
+  'compact half': ['#b03060', 'cross', [6, 3]],
   'lobes1': ['#d55e00', 'triangle-up', [1, 3]],
   'lobes2': ['#d55e00', 'diamond', [6, 3]],
   'lobes3': ['#d55e00', 'square', []],
@@ -23,6 +26,7 @@ const marker_paths = {  // as Vega draws them, in a box of 2 x 2
 
 // A method is known by its id and chart together.
 const key_of = m => m.chart === 'none' ? m.id : `${m.id} ${m.chart}`;
+const title_of_key = key => key.replace(/ (outgoing|half)$/, ' ($1)');
 const title_of = m => m.chart === 'none' ? m.id : `${m.id} (${m.chart})`;
 
 function style_of(key) {
@@ -34,10 +38,11 @@ function style_of(key) {
   return {color, shape, dash};
 }
 
-function key_mark(key) {
-  const {color, shape, dash} = style_of(key);
+const key_mark = key => mark_html(style_of(key));
+
+function mark_html({color, shape, dash}, line_alone = false) {
   return `<svg class="key" viewBox="-2 -1.1 4 2.2" aria-hidden="true"><path d="M-2,0H2" stroke="${color}" stroke-width=".3" ` +
-    `stroke-dasharray="${dash.map(d => d / 10)}"/><path d="${marker_paths[shape]}" fill="${color}"/></svg>`;
+    `stroke-dasharray="${dash.map(d => d / 10)}"/>${line_alone ? '' : `<path d="${marker_paths[shape]}" fill="${color}"/>`}</svg>`;
 }
 
 const mean = values => values.reduce((a, b) => a + b, 0) / values.length;

@@ -1,0 +1,110 @@
+#include <gonio/tools/report/merge.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <ostream>
+
+#include <gonio/brdf/bytes.h>
+#include <gonio/mapping/atomic_file.h>
+#include <gonio/mapping/error.h>
+#include <gonio/tools/report/write_page.h>
+
+namespace gonio {
+namespace {
+
+using Json = nlohmann::json;
+
+Json load_report(const std::filesystem::path& path) {
+  const Json report = Json::parse(read_bytes(path), nullptr, false);
+  if (report.is_discarded()) throw Error(path.string() + ": content: found no JSON, expected a report.json");
+  for (const char* key : {"materials", "lights"}) {
+    if (!report.is_object() || !report.contains(key) || !report[key].is_array())
+      throw Error(path.string() + ": " + key + ": found none, expected the list of a report.json");
+  }
+  const Json version = report.value("gonio_version", Json());
+  if (version != GONIO_VERSION)
+    throw Error(path.string() + ": gonio_version: found " + version.dump() + ", expected \"" GONIO_VERSION "\"");
+  return report;
+}
+
+/// Adds to each part of `machine` that is not there yet, as text.
+void add_machine(Json& machine, const Json& other) {
+  for (const auto& [key, value] : other.items()) {
+    const auto text = [](const Json& v) { return v.is_string() ? v.get<std::string>() : v.dump(); };
+    if (!machine.contains(key)) machine[key] = value;
+    const std::string all = text(machine[key]), added = text(value);
+    if (("; " + all + "; ").find("; " + added + "; ") == std::string::npos) machine[key] = all + "; " + added;
+  }
+}
+
+std::string number(const Json& value, const char* format) {
+  if (!value.is_number()) return "";
+  char text[32];
+  std::snprintf(text, sizeof(text), format, value.get<double>());
+  return text;
+}
+
+/// The method of highest efficiency; null if the material has none.
+const Json* best(const Json& material) {
+  const Json* found = nullptr;
+  if (!material.contains("methods")) return found;
+  for (const Json& method : material["methods"]) {
+    if (found == nullptr || method.value("efficiency", 0.0) > found->value("efficiency", 0.0)) found = &method;
+  }
+  return found;
+}
+
+void write_overview(std::ostream& out, const Json& report, const std::vector<std::string>& pages) {
+  const std::size_t materials = report["materials"].size(), lights = report["lights"].size();
+  out << "# Sampling quality\n\n" << materials << " materials, " << lights << " luminaires. Efficiency is 1 / (ns of a sample × (mean relvar from 2° to 70° + 0.001)).\n\n"
+      << "| material | format | most efficient | chart | sample ns | mean relvar | efficiency |\n|---|---|---|---|---|---|---|\n";
+  for (std::size_t k = 0; k < materials; ++k) {
+    const Json& material = report["materials"][k];
+    out << "| [" << material.value("name", "") << "](" << pages[k] << ") | " << material.value("format", "") << " | ";
+    if (const Json* method = best(material)) {
+      out << method->value("id", "") << " | " << method->value("chart", "") << " | "
+          << number(method->value("ns", Json::object()).value("sample", Json()), "%.3g") << " | " << number(method->value("mean_relvar", Json()), "%.2g")
+          << " | " << number(method->value("efficiency", Json()), "%.3g") << " |\n";
+    } else {
+      out << "| | | | |\n";
+    }
+  }
+  for (const Json& light : report["lights"]) out << "\n- " << light.value("name", "") << ", " << light.value("format", "") << '\n';
+}
+
+}  // namespace
+
+Json merge_reports(const std::vector<std::filesystem::path>& paths) {
+  Json merged;
+  for (const auto& path : paths) {
+    Json report = load_report(path);
+    if (merged.is_null()) {
+      merged = std::move(report);
+      continue;
+    }
+    for (const char* key : {"materials", "lights"})
+      for (Json& entry : report[key]) merged[key].push_back(std::move(entry));
+    if (report.contains("machine")) add_machine(merged["machine"], report["machine"]);
+    if (report.contains("command")) merged["command"] = merged.value("command", "") + "; " + report.value("command", "");
+    if (report.contains("stability") && !merged.contains("stability")) merged["stability"] = report["stability"];
+  }
+  return merged;
+}
+
+void write_merged_report(const std::filesystem::path& directory, const std::vector<std::filesystem::path>& paths) {
+  const Json report = merge_reports(paths);
+  std::vector<std::string> pages;  // of each material
+  for (const auto& path : paths) {
+    const std::filesystem::path page = std::filesystem::absolute(path).parent_path() / "report.html";
+    const std::string relative = page.lexically_relative(std::filesystem::absolute(directory).lexically_normal()).generic_string();
+    pages.resize(pages.size() + load_report(path)["materials"].size(), relative);
+  }
+  std::error_code failed;
+  std::filesystem::create_directories(directory, failed);
+  if (failed) throw Error(directory.string() + ": cannot be made: " + failed.message() + ", expected a folder to write to");
+  write_stream_atomically(directory / "report.json", [&](std::ostream& out) { out << report.dump(1) << '\n'; });
+  write_stream_atomically(directory / "report.html", [&](std::ostream& out) { write_page(out, report); });
+  write_stream_atomically(directory / "report.md", [&](std::ostream& out) { write_overview(out, report, pages); });
+}
+
+}  // namespace gonio
