@@ -270,10 +270,10 @@ class Resampler {
 
 RglFile resample_as_rgl(const Reflectance& f_r, std::string description, const RglSize& size,
                         const RglProgress& progress) {
-  if (size.side < 2 || size.vndf < 2 || size.incident < first_incident) {
+  if (size.side < 2 || size.vndf < 4 || size.incident < first_incident) {
     throw Error("RGL file: found " + std::to_string(size.side) + " nodes of luminance, " +
                 std::to_string(size.vndf) + " of vndf, " + std::to_string(size.incident) +
-                " incident angles, expected at least 2, 2 and 24");
+                " incident angles, expected at least 2, 4 and 24");
   }
   const Resampler resampler(f_r, std::move(description), size);
   std::vector<std::unique_ptr<Slice>> slices(first_incident);

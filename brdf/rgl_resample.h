@@ -18,7 +18,7 @@ using RglProgress = std::function<void(std::size_t incident)>;
 /// Limits of resample_as_rgl().
 struct RglSize {
   int side = 64;              ///< nodes along a side of `luminance` and the colours, >= 2
-  int vndf = 128;             ///< nodes along a side of `vndf`, >= 2
+  int vndf = 128;             ///< nodes along a side of `vndf`, >= 4: some of them reflect
   std::size_t incident = 96;  ///< at most this many incident angles, >= 24
   double tolerance = 0.002;   ///< of the interpolation between them: relative L1 of f_r cos(theta_o),
                               ///< times cos(theta_i)

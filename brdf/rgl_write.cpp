@@ -1,3 +1,4 @@
+#include <gonio/brdf/repair.h>
 #include <gonio/brdf/rgl_write.h>
 #include <gonio/brdf/spectrum.h>
 #include <gonio/brdf/tensor_write.h>
@@ -5,23 +6,61 @@
 #include <gonio/mapping/error.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <glm/geometric.hpp>
-#include <limits>
 
 namespace gonio {
 namespace {
 
-// [slice][channel][height][width]; `weights` makes a channel of a colour.
-std::vector<float> planes(const RglFile& file, const std::vector<glm::vec3>& weights, float least) {
-  const std::size_t size = file.colour.size() / file.theta_i.size();
+// [slice][channel][height][width] of value(cell, channel).
+template <class Value>
+std::vector<float> planes(const std::vector<glm::vec3>& cells, std::size_t slices, std::size_t channels,
+                          const Value& value) {
+  const std::size_t size = cells.size() / slices;
   std::vector<float> values;
-  values.reserve(file.colour.size() * weights.size());
-  for (std::size_t slice = 0; slice < file.theta_i.size(); ++slice) {
-    for (const glm::vec3& weight : weights) {
-      for (std::size_t i = 0; i < size; ++i) {
-        values.push_back(std::max(glm::dot(weight, file.colour[slice * size + i]), least));
+  values.reserve(cells.size() * channels);
+  for (std::size_t slice = 0; slice < slices; ++slice) {
+    for (std::size_t k = 0; k < channels; ++k) {
+      for (std::size_t i = 0; i < size; ++i) values.push_back(value(cells[slice * size + i], k));
+    }
+  }
+  return values;
+}
+
+// As RglTable repairs them, negative channels at 0.
+std::vector<glm::vec3> repaired_colour(const RglFile& file) {
+  std::vector<glm::vec3> cells = file.colour;
+  std::vector<CellKind> kinds;
+  for (const glm::vec3& cell : cells) kinds.push_back(kind_of(cell));
+  const std::size_t n = file.theta_i.size();
+  const auto height = static_cast<std::size_t>(file.colour_height);
+  const auto width = static_cast<std::size_t>(file.colour_width);
+  repair_cells(cells, kinds, {},
+               {{n * height, width, 1, false}, {n, height, width, false}, {1, n, height * width, false}});
+  return cells;
+}
+
+// Every slice with an integral of 1, uniform if it is black, as readers take them.
+std::vector<float> normalised(const RglFile::Grid& grid) {
+  constexpr double rounding = 1e-5;  // of sums of floats
+  std::vector<float> values = grid.values;
+  float* slice = values.data();
+  const std::ptrdiff_t size = static_cast<std::ptrdiff_t>(grid.height) * grid.width;
+  for (int k = 0; k < grid.slices; ++k, slice += size) {
+    double sum = 0;
+    for (int j = 0; j < grid.height; ++j) {
+      for (int i = 0; i < grid.width; ++i) {
+        // The trapezoid rule is the integral of the bilinear density.
+        const double area = (i % (grid.width - 1) == 0 ? 0.5 : 1.0) * (j % (grid.height - 1) == 0 ? 0.5 : 1.0);
+        sum += area * slice[j * grid.width + i];
       }
     }
+    const double integral = sum / ((grid.width - 1.0) * (grid.height - 1.0));
+    if (std::abs(integral - 1) < rounding) continue;
+    std::transform(slice, slice + size, slice, [&](float value) {
+      return integral > 0 ? static_cast<float>(value / integral) : 1.0f;
+    });
   }
   return values;
 }
@@ -38,7 +77,7 @@ void add_slices(TensorWriter& writer, const std::string& name, const RglFile::Gr
   writer.add(name,
              {1, static_cast<std::uint64_t>(grid.slices), static_cast<std::uint64_t>(grid.height),
               static_cast<std::uint64_t>(grid.width)},
-             grid.values);
+             normalised(grid));
 }
 
 }  // namespace
@@ -66,12 +105,15 @@ void write_rgl(const std::filesystem::path& path, const RglFile& file, RglColour
   add_slices(writer, "vndf", file.vndf);
   add_slices(writer, "luminance", file.luminance);
   writer.add("rgb", {1, n, 3, side, side},
-             planes(file, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, std::numeric_limits<float>::lowest()));
+             planes(file.colour, n, 3, [](const glm::vec3& cell, std::size_t k) { return cell[static_cast<int>(k)]; }));
   if (colour == RglColour::rgb_and_spectra) {
     const RgbSpectra spectra = rgb_spectra();
-    writer.add("spectra", {1, n, spectra.wavelengths.size(), side, side},
-               planes(file, spectra.reflectance, 0.0f));
-    writer.add("wavelengths", {spectra.wavelengths.size()}, spectra.wavelengths);
+    const std::size_t channels = spectra.wavelengths.size();
+    writer.add("spectra", {1, n, channels, side, side},
+               planes(repaired_colour(file), n, channels, [&](const glm::vec3& cell, std::size_t k) {
+                 return glm::dot(spectra.reflectance[k], cell);
+               }));
+    writer.add("wavelengths", {channels}, spectra.wavelengths);
   }
   writer.add("jacobian", std::string(1, '\1'));
   write_stream_atomically(path, [&](std::ostream& stream) { writer.write(stream); });
