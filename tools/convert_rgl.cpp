@@ -27,8 +27,11 @@ RglFile resample(const std::filesystem::path& in, const std::filesystem::path& o
 RglFile to_rgl(const std::filesystem::path& in, const std::filesystem::path& out,
                const CellPolicies& policies, bool rgb_only) {
   if (is_exr(in)) {
-    const StackFile stack = load_stack(in);
-    const CompactBsdf bsdf = load_compact(in);
+    StackFile stack = load_stack(in);
+    if (stack.colour.empty()) {
+      throw Error(in.string() + ": part colour: found none, expected one (a self-contained stack)");
+    }
+    const CompactBsdf bsdf(stack.diagrams, stack.interpolation, stack.storage, std::move(stack.colour));
     return resample(in, out, [&](const auto& wi, const auto& wo) { return bsdf.eval(wi, wo); },
                     stack.name);
   }
