@@ -7,7 +7,9 @@
 #include <gonio/fitting/synth.h>
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <random>
+#include <type_traits>
 
 namespace gonio {
 namespace {
@@ -29,6 +31,11 @@ std::shared_ptr<const Sampler> material() {
   return sampler;
 }
 
+GonioMaterial pbrt_material() {
+  static const auto data = std::make_shared<const GonioData>(GonioData{*material()});
+  return GonioMaterial(data);
+}
+
 struct Direction {
   float x, y, z;
 };
@@ -40,8 +47,27 @@ Direction random_direction(std::mt19937& engine, bool below) {
   return {r * std::cos(phi), r * std::sin(phi), below ? -z : z};
 }
 
+// pbrt gives the memory of a BxDF back without its destructor, and makes one at every hit.
+TEST(Integrate, PbrtBxDFIsAPointer) {
+  static_assert(std::is_trivially_copyable_v<GonioBxDF> && std::is_trivially_destructible_v<GonioBxDF>);
+  static_assert(sizeof(GonioBxDF) == sizeof(void*));
+  auto data = std::make_shared<const GonioData>(GonioData{*material()});
+  const std::weak_ptr<const GonioData> alive = data;
+  {
+    const GonioMaterial owner(std::move(data));
+    pbrt::ScratchBuffer buffer;
+    for (int hit = 0; hit < 3; ++hit) {
+      EXPECT_TRUE(pbrt::GetBSDF(owner, buffer).Sample_f({0, 0, 1}, 0, {0.5f, 0.5f}, pbrt::TransportMode::Radiance));
+    }
+    EXPECT_EQ(alive.use_count(), 1) << "hits own nothing";
+  }
+  EXPECT_TRUE(alive.expired());
+}
+
 TEST(Integrate, PbrtDrawsAndValuesAgree) {
-  const GonioBxDF bxdf(material());
+  const GonioMaterial owner = pbrt_material();
+  pbrt::ScratchBuffer buffer;
+  const GonioBxDF& bxdf = pbrt::GetBSDF(owner, buffer);
   const auto mode = pbrt::TransportMode::Radiance;
   std::mt19937 engine(5);
   std::uniform_real_distribution<float> uniform;
@@ -102,7 +128,9 @@ TEST(Integrate, MitsubaDrawsAndValuesAgree) {
 }
 
 TEST(Integrate, AlbedoIsTheMeanWeight) {
-  const GonioBxDF pbrt_side(material());
+  const GonioMaterial owner = pbrt_material();
+  pbrt::ScratchBuffer buffer;
+  const GonioBxDF& pbrt_side = pbrt::GetBSDF(owner, buffer);
   const GonioBSDF mitsuba_side(material(), true);
   std::mt19937 engine(7);
   std::uniform_real_distribution<float> uniform;

@@ -6,27 +6,33 @@
 #include <cmath>
 #include <memory>
 
-#include "pbrt_interface.h"  // in pbrt: <pbrt/base/bxdf.h>
+#include "pbrt_interface.h"  // in pbrt: <pbrt/materials.h>
+
+// What all hits of a material share.
+struct GonioData {
+  gonio::Sampler sampler;
+  gonio::MaterialHints hints = gonio::MaterialHints::of(sampler);
+};
 
 // A material of gonio as a BxDF of pbrt-v4. There, wo is the known direction and wi the drawn one:
-// the other way round than in gonio.
+// the other way round than in gonio. Made at every hit and never destroyed: a pointer, nothing more.
 class GonioBxDF {
  public:
-  explicit GonioBxDF(std::shared_ptr<const gonio::Sampler> sampler)
-      : sampler_(std::move(sampler)), hints_(gonio::MaterialHints::of(*sampler_)) {}
+  GonioBxDF() = default;  // pbrt allocates first and assigns then
+  explicit GonioBxDF(const GonioData* data) : data_(data) {}
 
   pbrt::BxDFFlags Flags() const { return pbrt::BxDFFlags::GlossyReflection; }
 
   // Two-sided: below the surface both directions are turned over. Nothing is transmitted.
   pbrt::SampledSpectrum f(pbrt::Vector3f wo, pbrt::Vector3f wi, pbrt::TransportMode) const {
-    return spectrum(sampler_->eval(up(wo, wo), up(wi, wo)));  // 0 if one is below
+    return spectrum(data_->sampler.eval(up(wo, wo), up(wi, wo)));  // 0 if one is below
   }
 
   std::optional<pbrt::BSDFSample> Sample_f(
       pbrt::Vector3f wo, pbrt::Float, pbrt::Point2f u, pbrt::TransportMode,
       pbrt::BxDFReflTransFlags what = pbrt::BxDFReflTransFlags::All) const {
     if (!reflects(what)) return {};
-    const auto s = sampler_->sample(up(wo, wo), {u.x, u.y});
+    const auto s = data_->sampler.sample(up(wo, wo), {u.x, u.y});
     if (!s) return {};
     const pbrt::Vector3f wi{s->wo.x, s->wo.y, s->wo.z};
     return pbrt::BSDFSample{spectrum(s->weight * s->pdf / s->wo.z), wo.z < 0 ? -wi : wi, s->pdf,
@@ -35,15 +41,15 @@ class GonioBxDF {
 
   pbrt::Float PDF(pbrt::Vector3f wo, pbrt::Vector3f wi, pbrt::TransportMode,
                   pbrt::BxDFReflTransFlags what = pbrt::BxDFReflTransFlags::All) const {
-    return reflects(what) ? sampler_->pdf(up(wo, wo), up(wi, wo)) : 0;
+    return reflects(what) ? data_->sampler.pdf(up(wo, wo), up(wi, wo)) : 0;
   }
 
-  // Without random numbers, where pbrt averages draws.
+  // Without random numbers, where BxDF::rho of pbrt averages draws.
   pbrt::SampledSpectrum rho(pbrt::Vector3f wo) const {
-    return spectrum(hints_.albedo(std::acos(std::fmin(pbrt::AbsCosTheta(wo), 1.0f))));
+    return spectrum(data_->hints.albedo(std::acos(std::fmin(pbrt::AbsCosTheta(wo), 1.0f))));
   }
 
-  pbrt::Float Roughness() const { return hints_.roughness(); }  // as alpha
+  pbrt::Float Roughness() const { return data_->hints.roughness(); }  // as alpha
   void Regularize() {}  // measured: wider lobes would be another material
 
  private:
@@ -57,6 +63,20 @@ class GonioBxDF {
   // In pbrt: RGBAlbedoSpectrum or, where f_r is above 1, RGBUnboundedSpectrum at the wavelengths.
   static pbrt::SampledSpectrum spectrum(const glm::vec3& rgb) { return {{rgb.r, rgb.g, rgb.b}}; }
 
-  std::shared_ptr<const gonio::Sampler> sampler_;
-  gonio::MaterialHints hints_;
+  const GonioData* data_ = nullptr;
+};
+
+// Lives as long as the scene, and the data with it.
+class GonioMaterial {
+ public:
+  using BxDF = GonioBxDF;
+  explicit GonioMaterial(std::shared_ptr<const GonioData> data) : data_(std::move(data)) {}
+
+  template <class TextureEvaluator>
+  GonioBxDF GetBxDF(TextureEvaluator, pbrt::MaterialEvalContext, pbrt::SampledWavelengths&) const {
+    return GonioBxDF(data_.get());
+  }
+
+ private:
+  std::shared_ptr<const GonioData> data_;
 };
