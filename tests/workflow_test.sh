@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# workflow_test.sh GONIO WORKFLOW WORK: 20 files, two of them broken; killed half way and started again.
+# workflow_test.sh GONIO WORKFLOW WORK: single jobs; then 20 files, two of them broken, killed half way and started
+# again.
 # Exit status 77 without snakemake.
 set -euo pipefail
 gonio=$1 workflow=$2 work=$3
@@ -18,6 +19,20 @@ for model in default lambert:albedo=0.5/0.4/0.3 ggx:alpha=0.3+lambert:albedo=0.2
 done
 head -c 1000 small.mbsdf >files/truncated.mbsdf
 echo "no table" >files/text.binary
+
+# One job: what is not the file's fault is no result, and a format that is refused stops no other.
+job() { "$workflow/material.sh" "$gonio" "$1" "alone/$1/status.txt" "exr bsdf" stack >/dev/null; }
+mkdir -p alone/small.mbsdf/small.exr  # where a file cannot be written
+job small.mbsdf && fail "a file that cannot be written is a success"
+[ ! -e alone/small.mbsdf/status.txt ] || fail "a file that cannot be written is a result"
+rmdir alone/small.mbsdf/small.exr
+job small.mbsdf || fail "not tried again"
+grep -qx ok alone/small.mbsdf/status.txt || fail "tried again: $(cat alone/small.mbsdf/status.txt)"
+LC_ALL=C sed 's/rgb\x05\x00/grb\x05\x00/' alone/small.mbsdf/small.bsdf >spectral.bsdf
+"$gonio" info spectral.bsdf | grep -q spectra || fail "spectral.bsdf is not spectral"
+job spectral.bsdf || fail "a spectral file"
+grep -qx ok alone/spectral.bsdf/status.txt || fail "a spectral file: $(cat alone/spectral.bsdf/status.txt)"
+grep -q "spectra: found" alone/spectral.bsdf/log.txt || fail "the refused format is not in the log"
 
 # The jobs as the cheapest there are: small stacks, and their files alone reported.
 cat >"$work/gonio" <<EOF
@@ -56,7 +71,7 @@ diff before.txt after.txt || fail "finished work was done again"
 [ "$(grep -lx ok $(finished) | wc -l)" = 18 ] || fail "expected 18 reports"
 [ "$(grep -Lx ok $(finished) | wc -l)" = 2 ] || fail "expected 2 failures"
 for name in text.binary truncated.mbsdf; do
-  grep -q "^$name: gonio convert: .*found .*, expected" database/overview/failures.txt || fail "no clear message for $name"
+  grep -q "^$name: .*found .*, expected" database/overview/failures.txt || fail "no clear message for $name"
 done
 grep -q "18 materials reported, 2 failed" second.log || fail "no summary"
 materials=$(grep -c '"source_bytes"' database/overview/report.json)
