@@ -243,13 +243,16 @@ json full_example() {
   for (json& m : first["methods"])
     if (m["chart"] != "none") m["ns"]["sample_batch"] = 31.25;
   for (const int kib : {1, 4, 16, 64})
-    first["front"].push_back({{"id", "compact"}, {"bytes", 1024 * kib}, {"ns", 300}, {"relvar", 0.1 / kib}, {"eval_error", kib < 64 ? json(0.2 / kib) : json()}, {"chosen", kib == 16}});
-  first["front"].push_back({{"id", "displacement/outgoing"}, {"bytes", 20000}, {"ns", 250}, {"relvar", 0.02}, {"eval_error", nullptr}, {"chosen", false}});
+    first["front"].push_back({{"id", "compact"}, {"bytes", 1024 * kib}, {"ns", 300}, {"relvar", 0.1 / kib}, {"eval_error", 0.2 / kib}, {"chosen", kib == 16}});
+  first["front"].push_back({{"id", "lobes1"}, {"bytes", 2000}, {"ns", 250}, {"relvar", 0.02}, {"eval_error", 0.3}, {"chosen", false}});
   json curves = json::array();
   for (const json& c : first["curves"]) curves.push_back({{"theta_i_deg", c["theta_i_deg"]}, {"model", c["table"]}});
   const json errors = {{"cosine_rms", 1}, {"log_rms", 1}, {"relative_l1", 1}, {"albedo", 1}, {"delta_e_2000", 1}};
   first["fits"] = {{{"model", "lambert:albedo=0.5"}, {"errors", {{"inside_cutoff", errors}, {"beyond_cutoff", errors}}}, {"curves", curves}}};
   first["methods"].push_back(method("lobes1", "none", 120, 30));
+  first["methods"].push_back(method("blend", "half", 180, 1.5));
+  first["methods"].back()["params"]["default"] = true;
+  report["materials"][1]["methods"].push_back(method("blend", "half", 180, 1.5));  // of a stack file
   for (const std::string variant : {"cardan", "gonio-diagram"})
     for (const std::string input : {"constant", "spike"}) {
       const bool fails = variant == "cardan" && input == "spike";
@@ -265,9 +268,9 @@ TEST_F(PageTest, ShowsWhatMemoryBuysAndTheFitsThemselves) {
   draw_all();
   EXPECT_EQ(count("#material-0 .chart svg"), charts + 1);
   EXPECT_EQ(count("#material-1 [data-chart=front]"), 0) << "a chart without data";
-  // Two panels with four and one, and three points; one of each panel is ringed.
-  EXPECT_EQ(count("[data-chart=front] .mark-symbol.role-mark.points path"), 5 + 3);
-  EXPECT_EQ(text("[data-chart=front] .keys"), "compactdisplacement (outgoing)");
+  // Four sizes and the lobes on each of two panels.
+  EXPECT_EQ(count("[data-chart=front] .mark-symbol.role-mark.points path"), 5 + 5);
+  EXPECT_EQ(text("[data-chart=front] .keys"), "compactlobes1");
   EXPECT_NE(text("[data-chart=front] .chart").find("kept"), std::string::npos);
 
   EXPECT_NE(text("#material-0 [data-chart=goniometric] .keys").find("fit of 1"), std::string::npos);
@@ -280,6 +283,11 @@ TEST_F(PageTest, ShowsWhatMemoryBuysAndTheFitsThemselves) {
 
   EXPECT_NE(text("#material-0 .methods thead").find("sample, batch, ns"), std::string::npos);
   EXPECT_EQ(text("#material-1 .methods thead").find("batch"), std::string::npos);
+  // What the library does by default says so, in the legend too.
+  EXPECT_EQ(count("#material-0 .methods abbr"), 1);
+  EXPECT_EQ(text("#material-0 .methods tr:has(abbr) td"), "blend (half) default");
+  EXPECT_EQ(count("#material-1 .methods abbr"), 0);
+  EXPECT_EQ(text("#methods label:has(abbr)"), "blend (half) default");
   EXPECT_NE(text("#provenance").find("gonio report 'a b.bsdf' -o <out>"), std::string::npos);
   EXPECT_NE(text("#provenance").find("SHA-256 0123abcd"), std::string::npos);
   expect_clean();

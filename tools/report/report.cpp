@@ -54,9 +54,10 @@ void add_report(CLI::App& app, const std::vector<std::string>& arguments) {
   add_stack_options(*verb, options->report.stack);
   add_cell_policies(*verb, options->report.policies);
   verb->footer(
-      "Angles 2, 10, 30, 50, 70, 80 and 85 degrees. Methods: uniform, cosine, nearest, mixture and displacement of\n"
-      "outgoing directions; displacement and blend of half vectors; for RGL files rgl, the format's own warps; lobes1, lobes2 and lobes3, fitted GGX lobes; and\n"
-      "displacement_small, a stack of about the lobes' bytes. Luminaires: relative variance and speed of emission.\n\n"
+      "Angles 2, 10, 30, 50, 70, 80 and 85 degrees. Methods: uniform, cosine; rgl, the own warps of RGL files; nearest, mixture and\n"
+      "displacement, one stack of the size given above; blend, the default stack of a table; compact, the smallest compact BSDF of\n"
+      "relative variance 0.01; lobes1, lobes2 and lobes3, fitted GGX lobes; and displacement_small, a stack of about the lobes' bytes.\n"
+      "A stack file is measured as it is. Luminaires: relative variance and speed of emission.\n\n"
       "Examples:\n"
       "  gonio report chrome.binary -o report\n"
       "  gonio report measured/*.bsdf --bytes 128KiB -o report\n"

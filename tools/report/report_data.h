@@ -21,7 +21,7 @@ struct CallTimes {
 
 /// One way of sampling one material, measured.
 struct MethodReport {
-  std::string id;          ///< uniform, cosine, nearest, mixture, displacement, blend, displacement_small, rgl, lobes1 ... 3
+  std::string id;          ///< one of those of docs/report.md
   std::string chart;       ///< what the method's density is tabulated over; "none" if nothing is tabulated
   nlohmann::json params;   ///< what made it
   std::size_t bytes = 0;   ///< all memory that the sampler holds, the source table apart
@@ -40,7 +40,7 @@ struct MaterialReport {
   std::vector<MethodReport> methods;
   nlohmann::json fits = nlohmann::json::array();  ///< of one, two and three lobes; empty for a stack file
   nlohmann::json curves = nlohmann::json::array();  ///< table_curves() at curve_angles
-  nlohmann::json front = nlohmann::json::array();  ///< stacks of several sizes: objects with id, bytes, ns, relvar, eval_error (null if it needs its table), chosen
+  nlohmann::json front = nlohmann::json::array();  ///< front_json() of stacks of several sizes and the fitted lobes
   std::string sha256{};  ///< of the file
   std::vector<WeightRow> weights{};     ///< of the continuous stacks, for the figure; not part of the JSON
   std::optional<Stack<float>> stack{};  ///< of `displacement`, for the figure; not part of the JSON

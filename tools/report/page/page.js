@@ -18,7 +18,7 @@ const charts = [
   {id: 'speed-accuracy', wide: true, make: speed_accuracy, title: 'Speed against accuracy', tools: ['time', 'relvar'],
     text: 'Lower left is better. Solid line: the Pareto front. Dotted lines: equal efficiency, two a decade down from the best method, at 100 %. The area of a marker grows with the logarithm of the bytes.'},
   {id: 'front', wide: true, make: memory_front, needs: material => (material.front || []).length, title: 'What memory buys',
-    text: 'What needs no table, in several sizes: relative variance and the error of evaluation against memory. Line: the Pareto front. Ringed: the one that is kept.'},
+    text: 'Relative variance and the error of evaluation against memory. Compact BSDFs need no table, and their error is against it. Fitted lobes draw for the table, which their relative variance needs; the error is that of the model alone. Line: the Pareto front. Ringed: the one that is kept.'},
   {id: 'relvar', make: relvar_over_angles, title: 'Relative variance over the incident angle', text: 'The number of samples for a given noise is in proportion to it.'},
   {id: 'worst-weight', make: worst_over_angles, title: 'Worst weight over the incident angle', text: 'The brightest firefly of 65,536 draws, over the mean.'},
   {id: 'weights', make: weight_histogram, title: 'Weights', angle: true, text: 'Shares of 16,384 draws in bins a fortieth of a decade wide; the outer bins take what is beyond. A perfect sampler has all weights at 1.'},
@@ -56,6 +56,8 @@ const significance = (() => {
   return 1 - 0.99 ** (1 / Math.max(tests, 1));
 })();
 
+const default_mark = m => m.params.default ? ' <abbr title="what Sampler builds of a table by default">default</abbr>' : '';
+
 function methods_table(material) {
   const best = best_of(material), times = times_of(material);
   const rows = material.methods.map(m => {
@@ -64,7 +66,7 @@ function methods_table(material) {
     const cells = [bytes_text(m.bytes), number(m.build_seconds, 2), ...times.map(t => number(m.ns[t])),
       number(relvar_at(m, 'mean'), 2), `${number(100 * efficiency_of(m) / efficiency_of(best))} %`, number(worst), number(100 * invalid, 2) + ' %',
       p < significance ? `<strong>${number(p, 2)}</strong>` : number(p, 2), number(m.qmc_slope, 2), number(m.coherence.stretch_p99), m.coherence.tears];
-    return `<tr${m === best ? ' class="best"' : ''}><td>${key_mark(key_of(m))}${escaped(title_of(m))}${m.params.chart_auto ? ' <abbr title="gonio convert --chart auto keeps this stack">auto</abbr>' : ''}</td>${cells.map(c => `<td>${c}</td>`).join('')}</tr>`;
+    return `<tr${m === best ? ' class="best"' : ''}><td>${key_mark(key_of(m))}${escaped(title_of(m))}${default_mark(m)}</td>${cells.map(c => `<td>${c}</td>`).join('')}</tr>`;
   });
   const heads = ['method', 'memory', 'build, s', ...times.map(t => `${time_title(t)}, ns`), 'mean relvar', 'efficiency', 'worst weight', 'invalid, max', 'χ² p, min',
     "Sobol' slope", 'stretch', 'tears'];
@@ -227,8 +229,8 @@ function start() {
     return;
   }
   const keys = new Map();
-  for (const m of report.materials.flatMap(material => material.methods)) keys.set(key_of(m), title_of(m));
-  element('methods').innerHTML = [...keys].map(([key, title]) => `<label><input type="checkbox" checked data-method="${escaped(key)}">${key_mark(key)}${escaped(title)}</label>`).join('');
+  for (const m of report.materials.flatMap(material => material.methods)) if (!keys.has(key_of(m)) || m.params.default) keys.set(key_of(m), m);
+  element('methods').innerHTML = [...keys].map(([key, m]) => `<label><input type="checkbox" checked data-method="${escaped(key)}">${key_mark(key)}${escaped(title_of(m))}${default_mark(m)}</label>`).join('');
   element('material').innerHTML = options_of(report.materials.map((m, k) => [k, m.name]));
   const angles = (report.materials[0].curves || []).map(c => c.theta_i_deg);
   if (angles.length && !angles.includes(state.theta_i)) state.theta_i = angles[0];
