@@ -1,6 +1,7 @@
 // Runs `gonio fit`, and the verbs that read what it writes, as a user does.
 
 #include <gonio/brdf/bytes.h>
+#include <gonio/brdf/exr/stack_file.h>
 #include <gonio/brdf/table.h>
 #include <gonio/fitting/synth.h>
 #include <gonio/mapping/error.h>
@@ -190,10 +191,12 @@ TEST_F(FitToolTest, ModelFilesAreInputs) {
 }
 
 TEST_F(FitToolTest, ReportComparesLobesAndStacks) {
-  std::ofstream(path("fit.json")) << to_json(parse_model(one_lobe));
-  expect_ok("report fit.json -o report --grid 16x16 --incident 12");
+  // A name that is no UTF-8 loses a letter, and no report.
+  std::ofstream(path("fit\xff.json")) << to_json(parse_model(one_lobe));
+  expect_ok("report fit\xff.json -o report --grid 16x16 --incident 12");
   const auto report = nlohmann::json::parse(read_bytes(path("report/report.json")));
   const auto& material = report["materials"][0];
+  EXPECT_EQ(material["name"], "fit\xef\xbf\xbd");
   EXPECT_EQ(material["format"], "model");
   ASSERT_EQ(material["fits"].size(), 3u);
   for (const auto& fit : material["fits"]) {
@@ -230,6 +233,40 @@ TEST_F(FitToolTest, ReportComparesLobesAndStacks) {
   for (const char* file : {"report/report.md", "report/report.html"}) EXPECT_TRUE(contains(read_bytes(path(file)), verdict)) << file;
   EXPECT_GT(material["lobes_against_stack"]["equal_time_ratio"].get<double>(), 0);
   EXPECT_TRUE(contains(read_bytes(path("report/report.md")), "For this material a "));
+}
+
+// A mixture has no batch form, and is reported all the same.
+TEST_F(FitToolTest, ReportOfAMixture) {
+  write_table("a.mbsdf", one_lobe);
+  expect_ok("convert a.mbsdf a.exr --incident 3 --grid 6x6");
+  StackFile stack = load_stack(path("a.exr"));
+  stack.interpolation = Interpolation::mixture;
+  save_stack(path("mixture.exr"), stack);
+  expect_ok("report a.exr mixture.exr -o report");
+  const auto report = nlohmann::json::parse(read_bytes(path("report/report.json")));
+  const auto& displacement = report["materials"][0]["methods"][0];
+  const auto& mixture = report["materials"][1]["methods"][0];
+  EXPECT_EQ(displacement["id"], "displacement");
+  EXPECT_TRUE(displacement["ns"].contains("sample_batch"));
+  EXPECT_EQ(mixture["id"], "mixture");
+  EXPECT_FALSE(mixture["ns"].contains("sample_batch"));
+  EXPECT_GT(mixture["ns"]["sample"], 0);
+}
+
+TEST_F(FitToolTest, MergeTakesReportsAlone) {
+  const auto write = [&](const char* name, const std::string& materials, const std::string& lights = "[]") {
+    std::ofstream(path(name)) << "{\"gonio_version\": \"" GONIO_VERSION "\", \"machine\": 1, \"command\": 2, \"materials\": " << materials
+                              << ", \"lights\": " << lights << "}";
+  };
+  write("number.json", "[{}, 5]");
+  expect_error("report --merge number.json -o all", "gonio report: number.json: materials[1]: found number, expected an object");
+  write("light.json", "[]", "[[]]");
+  expect_error("report --merge light.json -o all", "light.json: lights[0]: found array, expected an object");
+  EXPECT_FALSE(std::filesystem::exists(path("all")));
+  // Members of other types than gonio writes are as good as none.
+  write("odd.json", R"([{"name": 1, "methods": [3, {"efficiency": "x", "ns": 4}]}, {"methods": {"a": 1}}])");
+  expect_ok("report --merge odd.json odd.json -o all");
+  EXPECT_TRUE(contains(read_bytes(path("all/report.md")), "4 materials"));
 }
 
 }  // namespace

@@ -53,6 +53,13 @@ nlohmann::json stack_params(const CompactBsdf& bsdf) {
   return params;
 }
 
+bool has_batch_form(const Stack<float>& stack) { return stack.interpolation() != Interpolation::mixture; }
+bool has_batch_form(const Sampler& sampler) { return has_batch_form(sampler.stack()); }
+bool has_batch_form(const CompactBsdf& bsdf) {
+  const auto* stack = std::get_if<Stack<float>>(&bsdf.stack());
+  return !stack || has_batch_form(*stack);
+}
+
 /// A compact BSDF as what it is worth to its table: directions and pdf are its own, f_r is the table's.
 struct AgainstTable {
   std::shared_ptr<const BrdfTable> table;
@@ -88,10 +95,8 @@ class Bench {
     method.build_seconds = build_seconds;
     const TimedQueries queries(timed);
     method.ns = time_sampler(timed, queries);
-    if constexpr (std::is_same_v<Timed, Sampler>) {
-      if (timed.stack().interpolation() != Interpolation::mixture) method.ns_batch = time_batch(BatchSampler(timed), queries);
-    } else if constexpr (std::is_same_v<Timed, CompactBsdf>) {
-      method.ns_batch = time_batch(BatchSampler(timed), queries);
+    if constexpr (std::is_same_v<Timed, Sampler> || std::is_same_v<Timed, CompactBsdf>) {
+      if (has_batch_form(timed)) method.ns_batch = time_batch(BatchSampler(timed), queries);
     }
     methods_.push_back(std::move(method));
     subjects_.push_back(proof::subject_of(*sampler));
@@ -192,7 +197,8 @@ std::size_t add_lobes(const std::shared_ptr<const BrdfTable>& table, MaterialRep
     return 0;
   }
   std::size_t bytes = 0;
-  for (const StageFit& stage : fits.stages) {
+  for (StageFit& stage : fits.stages) {
+    stage.fit.model.name.clear();  // that of a file, which need not be UTF-8 as JSON is
     const LobeModel& model = stage.fit.model;
     const nlohmann::json written = nlohmann::json::parse(to_json(stage.fit, stage.errors));
     points.push_back(front_point(table, stage));

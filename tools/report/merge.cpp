@@ -14,14 +14,28 @@ namespace {
 
 using Json = nlohmann::json;
 
+/// The member of that name; null if there is none, or if `object` is none.
+const Json& member(const Json& object, const char* key) {
+  static const Json none;
+  const auto found = object.find(key);
+  return found == object.end() ? none : *found;
+}
+
+std::string string_of(const Json& value) { return value.is_string() ? value.get<std::string>() : ""; }
+
 Json load_report(const std::filesystem::path& path) {
   const Json report = Json::parse(read_bytes(path), nullptr, false);
   if (report.is_discarded()) throw Error(path.string() + ": content: found no JSON, expected a report.json");
   for (const char* key : {"materials", "lights"}) {
     if (!report.is_object() || !report.contains(key) || !report[key].is_array())
       throw Error(path.string() + ": " + key + ": found none, expected the list of a report.json");
+    for (std::size_t k = 0; k < report[key].size(); ++k) {
+      const Json& entry = report[key][k];
+      if (!entry.is_object())
+        throw Error(path.string() + ": " + key + "[" + std::to_string(k) + "]: found " + entry.type_name() + ", expected an object");
+    }
   }
-  const Json version = report.value("gonio_version", Json());
+  const Json& version = member(report, "gonio_version");
   if (version != GONIO_VERSION)
     throw Error(path.string() + ": gonio_version: found " + version.dump() + ", expected \"" GONIO_VERSION "\"");
   return report;
@@ -44,12 +58,16 @@ std::string number(const Json& value, const char* format) {
   return text;
 }
 
+double efficiency_of(const Json& method) {
+  const Json& value = member(method, "efficiency");
+  return value.is_number() ? value.get<double>() : 0;
+}
+
 /// The method of highest efficiency; null if the material has none.
 const Json* best(const Json& material) {
   const Json* found = nullptr;
-  if (!material.contains("methods")) return found;
-  for (const Json& method : material["methods"]) {
-    if (found == nullptr || method.value("efficiency", 0.0) > found->value("efficiency", 0.0)) found = &method;
+  for (const Json& method : member(material, "methods")) {
+    if (found == nullptr || efficiency_of(method) > efficiency_of(*found)) found = &method;
   }
   return found;
 }
@@ -60,16 +78,16 @@ void write_overview(std::ostream& out, const Json& report, const std::vector<std
       << "| material | format | most efficient | chart | sample ns | mean relvar | efficiency |\n|---|---|---|---|---|---|---|\n";
   for (std::size_t k = 0; k < materials; ++k) {
     const Json& material = report["materials"][k];
-    out << "| [" << material.value("name", "") << "](" << pages[k] << ") | " << material.value("format", "") << " | ";
+    out << "| [" << string_of(member(material, "name")) << "](" << pages[k] << ") | " << string_of(member(material, "format")) << " | ";
     if (const Json* method = best(material)) {
-      out << method->value("id", "") << " | " << method->value("chart", "") << " | "
-          << number(method->value("ns", Json::object()).value("sample", Json()), "%.3g") << " | " << number(method->value("mean_relvar", Json()), "%.2g")
-          << " | " << number(method->value("efficiency", Json()), "%.3g") << " |\n";
+      out << string_of(member(*method, "id")) << " | " << string_of(member(*method, "chart")) << " | "
+          << number(member(member(*method, "ns"), "sample"), "%.3g") << " | " << number(member(*method, "mean_relvar"), "%.2g") << " | "
+          << number(member(*method, "efficiency"), "%.3g") << " |\n";
     } else {
       out << "| | | | |\n";
     }
   }
-  for (const Json& light : report["lights"]) out << "\n- " << light.value("name", "") << ", " << light.value("format", "") << '\n';
+  for (const Json& light : report["lights"]) out << "\n- " << string_of(member(light, "name")) << ", " << string_of(member(light, "format")) << '\n';
 }
 
 }  // namespace
@@ -84,8 +102,8 @@ Json merge_reports(const std::vector<std::filesystem::path>& paths) {
     }
     for (const char* key : {"materials", "lights"})
       for (Json& entry : report[key]) merged[key].push_back(std::move(entry));
-    if (report.contains("machine")) add_machine(merged["machine"], report["machine"]);
-    if (report.contains("command")) merged["command"] = merged.value("command", "") + "; " + report.value("command", "");
+    if (member(report, "machine").is_object() && member(merged, "machine").is_object()) add_machine(merged["machine"], report["machine"]);
+    if (report.contains("command")) merged["command"] = string_of(member(merged, "command")) + "; " + string_of(report["command"]);
     if (report.contains("stability") && !merged.contains("stability")) merged["stability"] = report["stability"];
   }
   return merged;

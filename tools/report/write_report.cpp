@@ -100,10 +100,10 @@ void write_markdown(std::ostream& out, const Report& report) {
           << m.coherence.tears + m.coherence.folds << " | " << number(m.convergence.qmc_slope, 2) << " | "
           << number(m.convergence.mc_slope, 2) << " |\n";
     if (!material.front.empty()) {
-      out << "\nWhat memory buys:\n\n| stack | bytes | ns | relvar | evaluation error | kept |\n|---|---|---|---|---|---|\n";
+      out << "\nWhat memory buys (lobes draw for the table, compact BSDFs need none):\n\n| form | bytes | ns | relvar | evaluation error | kept |\n|---|---|---|---|---|---|\n";
       for (const nlohmann::json& point : material.front) {
         out << "| " << point["id"].get<std::string>() << " | " << kib(point["bytes"]);
-        for (const char* key : {"ns", "relvar", "eval_error"}) out << " | " << (point[key].is_number() ? number(point[key]) : "-");
+        for (const char* key : {"ns", "relvar", "eval_error"}) out << " | " << number(point[key]);
         out << " | " << (point["chosen"] == true ? "yes" : "") << " |\n";
       }
     }
@@ -205,7 +205,7 @@ void write_report(const std::filesystem::path& directory, const Report& report) 
     if (material.stack) write_grid_figure(directory / (material.name + ".svg"), material.name, *material.stack);
   }
   const nlohmann::json json = to_json(report);
-  write_stream_atomically(directory / "report.json", [&](std::ostream& out) { out << json.dump(1) << '\n'; });
+  write_stream_atomically(directory / "report.json", [&](std::ostream& out) { out << json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) << '\n'; });
   write_stream_atomically(directory / "report.html", [&](std::ostream& out) { write_page(out, json); });
   write_stream_atomically(directory / "report.md", [&](std::ostream& out) { write_markdown(out, report); });
 }
