@@ -12,12 +12,13 @@ namespace gonio {
 
 /// What a compact BSDF is to be: as small as `max_variance` allows, or as near to the table as `budget` allows.
 struct CompactOptions {
-  /// The least bytes whose relative variance is at most this at every angle up to 80 degrees. None: the least
-  /// evaluation error within the budget.
+  /// The least bytes whose relative variance is at most this at every angle up to 80 degrees, with a colour whose
+  /// evaluation error is at most a fifth of its root, or hardly larger than that of the finest colour. None: the
+  /// least evaluation error within the budget.
   std::optional<double> max_variance = 0.003;
   std::size_t budget = 256 * 1024;  ///< at most this many bytes
   std::vector<Chart> candidates{Chart::half, Chart::outgoing};
-  Incidence incidence;  ///< where the error counts
+  Incidence incidence;  ///< where the error counts; `max_variance` holds at every angle all the same
 };
 
 /// A compact BSDF as data: what a stack file holds.

@@ -197,7 +197,10 @@ glm::vec3 GridTable::eval(const glm::vec3& wi, const glm::vec3& wo) const noexce
   const auto theta = [](const glm::vec3& w) {
     return fast_atan2(std::sqrt(w.x * w.x + w.y * w.y), w.z);
   };
-  const float phi = std::abs(fast_atan2(wi.x * wo.y - wi.y * wo.x, wi.x * wo.x + wi.y * wo.y));
+  // At the pole, where wi has no azimuth, phi is relative to +x.
+  const bool pole = wi.x == 0.0f && wi.y == 0.0f;
+  const float ix = pole ? 1.0f : wi.x, iy = pole ? 0.0f : wi.y;
+  const float phi = std::abs(fast_atan2(ix * wo.y - iy * wo.x, ix * wo.x + iy * wo.y));
   const Lerp i = position(theta(wi), pi / 2, n_theta_in_);
   const Lerp o = position(theta(wo), pi / 2, n_theta_out_);
   const Lerp p = position(phi, pi, n_phi_);

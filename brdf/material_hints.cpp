@@ -45,7 +45,7 @@ MaterialHints::MaterialHints(const Draw& draw) {
   float below = 0;
   for (const auto& [slope, weight] : slopes) {
     below += weight;
-    if (below >= 0.5f * total) {
+    if (total > 0 && below >= 0.5f * total) {
       roughness_ = std::min(slope, 1.0f);
       break;
     }

@@ -203,6 +203,7 @@ class BestLines {
 std::pair<std::size_t, std::size_t> choose_size(const BestLines& across, std::size_t most_across,
                                                 const BestLines& along, std::size_t most_along, double limit) {
   std::pair<std::size_t, std::size_t> best{most_across, most_along};
+  if (!(limit > 0)) return best;
   for (std::size_t m = 2; m <= most_across; ++m)
     for (std::size_t n = 2; n <= most_along; ++n)
       if (across.error(m) + along.error(n) <= limit && m * n < best.first * best.second) best = {m, n};

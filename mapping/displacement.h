@@ -149,7 +149,7 @@ class Displacement {
       return Slope<T>{(free.below - bound.below) + (free.inside - bound.inside), free.slope + ratio * bound.slope};
     };
     // std::max and std::min drop the NaN of 0/0.
-    const T lo = std::max(T(0), (target - larger * end) / lesser), hi = std::min(end, target / lesser);
+    const T hi = std::min(end, target / lesser), lo = std::min(std::max(T(0), (target - larger * end) / lesser), hi);
     difference(monotone_root(difference, std::clamp(target, lo, hi), lo, hi));
   }
 

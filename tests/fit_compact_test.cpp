@@ -77,8 +77,8 @@ TEST(FitCompact, DiffuseIsAFewHundredBytes) {
   CompactOptions options;
   options.max_variance = 0.01;
   const CompactFit fit = fit_compact(*synthetic("lambert:albedo=0.5/0.4/0.3"), options).best();
-  EXPECT_LT(fit.bytes, 1000u);
-  EXPECT_LT(fit.quality.eval_error, 0.01);
+  EXPECT_LT(fit.bytes, 500u);
+  EXPECT_LT(fit.quality.eval_error, 0.02);
 }
 
 // Near the normal, a narrow lobe leaves its neighbours behind soonest: in the chart of outgoing directions its
@@ -107,17 +107,42 @@ TEST(FitCompact, TheSameEveryTime) {
   EXPECT_EQ(a.colour.values(), b.colour.values());
 }
 
-TEST(FitCompact, BytesGoWhereTheMaterialIsSeen) {
-  CompactOptions everywhere, grazing;
-  everywhere.max_variance = grazing.max_variance = 0.01;
+TEST(CompactCurve, BytesGoWhereTheMaterialIsSeen) {
+  CompactOptions grazing;
   grazing.incidence = std::vector<double>(90, 0.0);
   for (std::size_t k = 60; k < 80; ++k) grazing.incidence[k] = 0.05;
-  const auto share_below_45 = [](const CompactFit& fit) {
-    std::size_t low = 0;
-    for (const double theta : fit.diagrams.theta_i) low += theta < 45 * degree;
-    return static_cast<double>(low) / static_cast<double>(fit.diagrams.theta_i.size());
+  const auto share_below_45 = [](const std::vector<CompactFit>& curve) {
+    std::size_t low = 0, all = 0;
+    for (const CompactFit& fit : curve) {
+      for (const double theta : fit.diagrams.theta_i) low += theta < 45 * degree;
+      all += fit.diagrams.theta_i.size();
+    }
+    return static_cast<double>(low) / static_cast<double>(all);
   };
-  EXPECT_LT(share_below_45(fit_compact(*glossy(), grazing).best()), share_below_45(fit_compact(*glossy(), everywhere).best()));
+  const std::vector<double> variances{0.01, 0.001};
+  EXPECT_LT(share_below_45(compact_curve(*glossy(), variances, grazing)), share_below_45(compact_curve(*glossy(), variances)));
+}
+
+// More bytes never make it much worse: the search goes both ways, to fewer lines at more angles and back.
+TEST(FitCompact, ErrorFallsWithTheBudget) {
+  const auto narrow = synthetic("ggx:alpha=0.08,F0=0.3");
+  double least = 1e9;
+  for (const std::size_t budget : {1024, 2048, 4096, 8192}) {
+    CompactOptions options;
+    options.max_variance.reset();
+    options.budget = budget;
+    const CompactFit fit = fit_compact(*narrow, options).best();
+    EXPECT_LE(fit.bytes, budget);
+    EXPECT_LT(fit.quality.eval_error, 1.15 * least) << budget;
+    least = std::min(least, fit.quality.eval_error);
+  }
+  EXPECT_LT(least, 0.06);
+}
+
+// A normal with the azimuth of every wo at 0 once made all compact BSDFs of such tables too dark.
+TEST(FitCompact, KeepsTheAlbedoAtTheNormal) {
+  const CompactFit fit = fit_compact(*synthetic("ggx:alpha=0.08,F0=0.3")).best();
+  EXPECT_LT(fit.quality.albedo_error, 0.01);
 }
 
 TEST(FitCompact, BlackTable) {
@@ -132,6 +157,7 @@ TEST(FitCompact, RefusesBadOptions) {
   EXPECT_THROW(fit_compact(*glossy(), options), Error);
   options.max_variance = 0.01, options.budget = 100;
   EXPECT_THROW(fit_compact(*glossy(), options), Error);
+  EXPECT_THROW(compact_curve(*glossy(), {0.1, 0}), Error);
 }
 
 TEST(CompactCurve, FallsWithTheBytes) {

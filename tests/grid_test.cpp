@@ -77,10 +77,13 @@ TEST(Grid, LinearBetweenCentresAndConstantBeyond) {
   EXPECT_NEAR(at(2.9, 2.9, 0.5), 220.0, 1e-3);
 }
 
-TEST(Grid, NoAzimuthAtTheNormalIsNoError) {
+// All of the hemisphere would get the column of phi = 0 otherwise.
+TEST(Grid, AtTheNormalAzimuthsAreThoseFromX) {
   const GridTable table(make_grid(3, 3, 4));
   EXPECT_TRUE(std::isfinite(table.eval({0, 0, 1}, {0, 0, 1}).r));
-  EXPECT_TRUE(std::isfinite(table.eval({0, 0, 1}, direction(1.0, 2.0)).r));
+  for (const double phi : {0.0, 1.0, 2.0, 3.0})
+    EXPECT_NEAR(table.eval({0, 0, 1}, direction(1.0, phi)).r, table.eval(direction(1e-5, 0.0), direction(1.0, phi)).r, 1e-4) << phi;
+  EXPECT_NE(table.eval({0, 0, 1}, direction(1.0, 0.0)).r, table.eval({0, 0, 1}, direction(1.0, 3.0)).r);
 }
 
 TEST(Grid, ScalarAndSingleCell) {

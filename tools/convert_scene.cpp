@@ -29,8 +29,12 @@ std::vector<CompactFit> fits_of(const SceneMaterial& material, std::size_t bytes
   CompactOptions options;
   options.budget = std::max(bytes, options.budget);  // what is too large after all, the split says
   options.incidence = material.incidence;
-  return compact_curve(table, {std::begin(tolerances), std::end(tolerances)}, options,
-                       [&](double share) { progress.update(share); });
+  try {
+    return compact_curve(table, {std::begin(tolerances), std::end(tolerances)}, options,
+                         [&](double share) { progress.update(share); });
+  } catch (const Error& error) {
+    throw Error(material.name + ": " + error.what());
+  }
 }
 
 /// Of every curve the best point within the same number of bytes; the smallest if none is.
@@ -93,8 +97,9 @@ void print(const std::vector<SceneMaterial>& scene, const std::vector<Curve>& cu
                 scene[k].share * s.variance, e.bytes, e.variance);
   }
   std::printf("%-24s %7s %9zu %9s %12.3g %11zu\n", "sum", "1", split.bytes, "", split.variance, even.bytes);
-  std::printf("summed variance: %.3g; evenly split: %.3g, %.2f times that\n", split.variance, even.variance,
-              even.variance / split.variance);
+  std::printf("summed variance: %.3g; evenly split: %.3g", split.variance, even.variance);
+  if (split.variance > 0) std::printf(", %.2f times that", even.variance / split.variance);
+  std::printf("\n");
 }
 
 }  // namespace
@@ -139,7 +144,7 @@ void convert_scene(const std::filesystem::path& path, std::size_t bytes, const s
     file.storage = Storage::packed16;
     save_stack(out / (scene[k].name + ".exr"), file);
   }
-  write_stream_atomically(out / "scene-budget.json", [&](std::ostream& stream) { stream << json.dump(1) << '\n'; });
+  write_stream_atomically(out / "scene-budget.json", [&](std::ostream& stream) { stream << json.dump(1, ' ', false, ordered_json::error_handler_t::replace) << '\n'; });
   print(scene, curves, split, even);
 }
 

@@ -24,7 +24,7 @@ class Reader {
   json parse() const {
     try {
       return json::parse(read_bytes(file_));
-    } catch (const json::parse_error& error) {
+    } catch (const json::exception& error) {  // out_of_range for a number like 1e999
       const std::string what = error.what();  // "[json.exception.parse_error.101] parse error at line 1 ..."
       throw Error(file_ + ": is not JSON: " + what.substr(what.find("] ") + 2));
     }
