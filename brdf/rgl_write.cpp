@@ -15,8 +15,8 @@ namespace {
 
 // [slice][channel][height][width] of value(cell, channel).
 template <class Value>
-std::vector<float> planes(const std::vector<glm::vec3>& cells, std::size_t slices, std::size_t channels,
-                          const Value& value) {
+std::vector<float> planes(const std::vector<glm::vec3>& cells, std::size_t slices,
+                          std::size_t channels, const Value& value) {
   const std::size_t size = cells.size() / slices;
   std::vector<float> values;
   values.reserve(cells.size() * channels);
@@ -36,8 +36,9 @@ std::vector<glm::vec3> repaired_colour(const RglFile& file) {
   const std::size_t n = file.theta_i.size();
   const auto height = static_cast<std::size_t>(file.colour_height);
   const auto width = static_cast<std::size_t>(file.colour_width);
-  repair_cells(cells, kinds, {},
-               {{n * height, width, 1, false}, {n, height, width, false}, {1, n, height * width, false}});
+  repair_cells(
+      cells, kinds, {},
+      {{n * height, width, 1, false}, {n, height, width, false}, {1, n, height * width, false}});
   return cells;
 }
 
@@ -52,7 +53,8 @@ std::vector<float> normalised(const RglFile::Grid& grid) {
     for (int j = 0; j < grid.height; ++j) {
       for (int i = 0; i < grid.width; ++i) {
         // The trapezoid rule is the integral of the bilinear density.
-        const double area = (i % (grid.width - 1) == 0 ? 0.5 : 1.0) * (j % (grid.height - 1) == 0 ? 0.5 : 1.0);
+        const double area =
+            (i % (grid.width - 1) == 0 ? 0.5 : 1.0) * (j % (grid.height - 1) == 0 ? 0.5 : 1.0);
         sum += area * slice[j * grid.width + i];
       }
     }
@@ -70,7 +72,8 @@ void add_grid(TensorWriter& writer, const std::string& name, const RglFile::Grid
   std::vector<float> values = grid.values;
   const int rows = std::max(grid.height, 2);
   if (grid.height == 1) values.insert(values.end(), grid.values.begin(), grid.values.end());
-  writer.add(name, {static_cast<std::uint64_t>(rows), static_cast<std::uint64_t>(grid.width)}, values);
+  writer.add(name, {static_cast<std::uint64_t>(rows), static_cast<std::uint64_t>(grid.width)},
+             values);
 }
 
 void add_slices(TensorWriter& writer, const std::string& name, const RglFile::Grid& grid) {
@@ -93,7 +96,8 @@ void write_rgl(const std::filesystem::path& path, const RglFile& file, RglColour
                 " and " + text(file.colour_height, file.colour_width) +
                 ", expected squares of one size, as other readers do");
   }
-  if (!file.jacobian) throw Error(path.string() + ": jacobian: found 0, expected 1: pbrt-v4 does not read it");
+  if (!file.jacobian)
+    throw Error(path.string() + ": jacobian: found 0, expected 1: pbrt-v4 does not read it");
   const auto n = static_cast<std::uint64_t>(file.theta_i.size());
   const auto side = static_cast<std::uint64_t>(grid.width);
   TensorWriter writer;
@@ -105,14 +109,17 @@ void write_rgl(const std::filesystem::path& path, const RglFile& file, RglColour
   add_slices(writer, "vndf", file.vndf);
   add_slices(writer, "luminance", file.luminance);
   writer.add("rgb", {1, n, 3, side, side},
-             planes(file.colour, n, 3, [](const glm::vec3& cell, std::size_t k) { return cell[static_cast<int>(k)]; }));
+             planes(file.colour, n, 3, [](const glm::vec3& cell, std::size_t k) {
+               return cell[static_cast<int>(k)];
+             }));
   if (colour == RglColour::rgb_and_spectra) {
     const RgbSpectra spectra = rgb_spectra();
     const std::size_t channels = spectra.wavelengths.size();
-    writer.add("spectra", {1, n, channels, side, side},
-               planes(repaired_colour(file), n, channels, [&](const glm::vec3& cell, std::size_t k) {
-                 return glm::dot(spectra.reflectance[k], cell);
-               }));
+    writer.add(
+        "spectra", {1, n, channels, side, side},
+        planes(repaired_colour(file), n, channels, [&](const glm::vec3& cell, std::size_t k) {
+          return glm::dot(spectra.reflectance[k], cell);
+        }));
     writer.add("wavelengths", {channels}, spectra.wavelengths);
   }
   writer.add("jacobian", std::string(1, '\1'));

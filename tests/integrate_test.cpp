@@ -15,7 +15,8 @@ namespace gonio {
 namespace {
 
 std::shared_ptr<const BrdfTable> table_of(const char* description) {
-  return std::make_shared<const BrdfTable>(GridTable(synthesize_grid(parse_model(description), 32, 48)), BrdfTable::Info{});
+  return std::make_shared<const BrdfTable>(
+      GridTable(synthesize_grid(parse_model(description), 32, 48)), BrdfTable::Info{});
 }
 
 std::shared_ptr<const Sampler> sampler_of(const char* description) {
@@ -49,7 +50,8 @@ Direction random_direction(std::mt19937& engine, bool below) {
 
 // pbrt gives the memory of a BxDF back without its destructor, and makes one at every hit.
 TEST(Integrate, PbrtBxDFIsAPointer) {
-  static_assert(std::is_trivially_copyable_v<GonioBxDF> && std::is_trivially_destructible_v<GonioBxDF>);
+  static_assert(std::is_trivially_copyable_v<GonioBxDF> &&
+                std::is_trivially_destructible_v<GonioBxDF>);
   static_assert(sizeof(GonioBxDF) == sizeof(void*));
   auto data = std::make_shared<const GonioData>(GonioData{*material()});
   const std::weak_ptr<const GonioData> alive = data;
@@ -57,7 +59,8 @@ TEST(Integrate, PbrtBxDFIsAPointer) {
     const GonioMaterial owner(std::move(data));
     pbrt::ScratchBuffer buffer;
     for (int hit = 0; hit < 3; ++hit) {
-      EXPECT_TRUE(pbrt::GetBSDF(owner, buffer).Sample_f({0, 0, 1}, 0, {0.5f, 0.5f}, pbrt::TransportMode::Radiance));
+      EXPECT_TRUE(pbrt::GetBSDF(owner, buffer)
+                      .Sample_f({0, 0, 1}, 0, {0.5f, 0.5f}, pbrt::TransportMode::Radiance));
     }
     EXPECT_EQ(alive.use_count(), 1) << "hits own nothing";
   }
@@ -165,7 +168,8 @@ TEST(MaterialHints, AlbedoOfTheTable) {
 }
 
 TEST(MaterialHints, RoughnessOfKnownLobes) {
-  EXPECT_NEAR(MaterialHints::of(*sampler_of("lambert:albedo=0.5")).roughness(), std::tan(pi<float> / 8), 0.02);
+  EXPECT_NEAR(MaterialHints::of(*sampler_of("lambert:albedo=0.5")).roughness(),
+              std::tan(pi<float> / 8), 0.02);
   const float rough = MaterialHints::of(*sampler_of("ggx:alpha=0.4,F0=1")).roughness();
   const float glossy = MaterialHints::of(*sampler_of("ggx:alpha=0.15,F0=1")).roughness();
   EXPECT_NEAR(rough, 0.32, 0.02);

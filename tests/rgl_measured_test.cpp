@@ -39,8 +39,10 @@ void expect_close(const std::string& name, const Reflectance& f_r, const Bounds&
     least = std::min(least, quality.integral);
     largest = std::max(largest, quality.integral);
   }
-  std::printf("%s: error mean %.4f, worst %.4f; pdf integrates to %.4f to %.4f; %zu angles, %ju bytes\n", name.c_str(),
-              mean, worst, least, largest, table.theta_i().size(), std::filesystem::file_size(folder / "a.bsdf"));
+  std::printf(
+      "%s: error mean %.4f, worst %.4f; pdf integrates to %.4f to %.4f; %zu angles, %ju bytes\n",
+      name.c_str(), mean, worst, least, largest, table.theta_i().size(),
+      std::filesystem::file_size(folder / "a.bsdf"));
   EXPECT_LT(mean, bounds.mean);
   EXPECT_LT(worst, bounds.worst);
   EXPECT_GT(least, 0.998);
@@ -70,11 +72,14 @@ TEST_P(MeasuredRgl, StackToRgl) {
   const auto& [name, bounds] = GetParam();
   const BrdfTable table = load_table(test_data() / "rgl" / (std::string(name) + "_rgb.bsdf"));
   const CompactBsdf bsdf = fit_compact(table).best().bsdf();
-  expect_close(name, [&](const glm::vec3& wi, const glm::vec3& wo) { return bsdf.eval(wi, wo); }, bounds);
+  expect_close(
+      name, [&](const glm::vec3& wi, const glm::vec3& wo) { return bsdf.eval(wi, wo); }, bounds);
 }
 
 INSTANTIATE_TEST_SUITE_P(Rgl, MeasuredRgl,
-                         testing::Values(Material{"satin_rosaline", {}}, Material{"cg_sunflower", {0.01, 0.032}}), name_of);
+                         testing::Values(Material{"satin_rosaline", {}},
+                                         Material{"cg_sunflower", {0.01, 0.032}}),
+                         name_of);
 
 // These stay above 1 %, as measured: bounds that a change for the worse breaks.
 class MeasuredMbsdf : public Measured {};
@@ -82,15 +87,19 @@ class MeasuredMbsdf : public Measured {};
 TEST_P(MeasuredMbsdf, TableToRgl) {
   const auto& [name, bounds] = GetParam();
   const BrdfTable table = load_table(test_data() / "mbsdf" / (std::string(name) + ".mbsdf"));
-  expect_close(name, [&](const glm::vec3& wi, const glm::vec3& wo) { return table.eval(wi, wo); }, bounds);
+  expect_close(
+      name, [&](const glm::vec3& wi, const glm::vec3& wo) { return table.eval(wi, wo); }, bounds);
 }
 
 INSTANTIATE_TEST_SUITE_P(CarPaint, MeasuredMbsdf,
-                         testing::Values(Material{"carpaint_blue", {0.023, 0.085}}, Material{"carpaint_red", {0.075, 0.2}}), name_of);
+                         testing::Values(Material{"carpaint_blue", {0.023, 0.085}},
+                                         Material{"carpaint_red", {0.075, 0.2}}),
+                         name_of);
 
 TEST(RglOfMerl, SynthesisedTable) {
   const BrdfTable table(MerlTable(synthesize_merl(parse_model("default")), {}), {});
-  expect_close("default", [&](const glm::vec3& wi, const glm::vec3& wo) { return table.eval(wi, wo); });
+  expect_close("default",
+               [&](const glm::vec3& wi, const glm::vec3& wo) { return table.eval(wi, wo); });
 }
 
 }  // namespace

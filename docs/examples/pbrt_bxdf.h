@@ -15,7 +15,8 @@ struct GonioData {
 };
 
 // A material of gonio as a BxDF of pbrt-v4. There, wo is the known direction and wi the drawn one:
-// the other way round than in gonio. Made at every hit and never destroyed: a pointer, nothing more.
+// the other way round than in gonio. Made at every hit and never destroyed: a pointer, nothing
+// more.
 class GonioBxDF {
  public:
   GonioBxDF() = default;  // pbrt allocates first and assigns then

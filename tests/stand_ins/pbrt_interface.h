@@ -1,7 +1,8 @@
 #pragma once
 
 // What docs/examples/pbrt_bxdf.h uses of pbrt-v4, as little as compiles: names and meanings of
-// pbrt/base/bxdf.h, pbrt/materials.h and pbrt/util, no code of theirs. Colours have three values here.
+// pbrt/base/bxdf.h, pbrt/materials.h and pbrt/util, no code of theirs. Colours have three values
+// here.
 
 #include <array>
 #include <cstddef>
@@ -27,7 +28,14 @@ struct SampledSpectrum {
 
 enum class TransportMode { Radiance, Importance };
 enum class BxDFReflTransFlags { Unset = 0, Reflection = 1, Transmission = 2, All = 3 };
-enum class BxDFFlags { Unset = 0, Reflection = 1, Transmission = 2, Diffuse = 4, Glossy = 8, GlossyReflection = 9 };
+enum class BxDFFlags {
+  Unset = 0,
+  Reflection = 1,
+  Transmission = 2,
+  Diffuse = 4,
+  Glossy = 8,
+  GlossyReflection = 9
+};
 
 /// f without the cosine; wi is the direction that was drawn.
 struct BSDFSample {
@@ -57,7 +65,8 @@ class ScratchBuffer {
 
 /// What Material::GetBSDF() does at a hit, the frame apart.
 template <class ConcreteMaterial>
-const typename ConcreteMaterial::BxDF& GetBSDF(const ConcreteMaterial& material, ScratchBuffer& buffer) {
+const typename ConcreteMaterial::BxDF& GetBSDF(const ConcreteMaterial& material,
+                                               ScratchBuffer& buffer) {
   auto* bxdf = buffer.Alloc<typename ConcreteMaterial::BxDF>();
   SampledWavelengths lambda;
   *bxdf = material.GetBxDF(TextureEvaluator{}, MaterialEvalContext{}, lambda);
