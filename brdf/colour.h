@@ -47,6 +47,7 @@ class Colour {
 
   bool empty() const noexcept { return codes_.empty(); }
   int side() const noexcept { return side_; }
+  std::size_t cells() const noexcept { return codes_.size() / 3; }
   const std::vector<float>& theta_i() const noexcept { return theta_i_; }
   /// As they are stored; a colour made of them equals this one bit by bit.
   std::vector<glm::vec3> values() const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include <gonio/mapping/code16.h>
@@ -156,6 +157,8 @@ PackedStack::PackedStack(const StackGrid& grid) : chart_(grid.chart) {
   theta_i_.assign(rounded.theta_i.begin(), rounded.theta_i.end());
   const std::size_t k_count = theta_i_.size(), m = lines.phi.size(), n = lines.r.size();
   const std::size_t blocks = (n - 1 + block - 1) / block;
+  if (k_count * m * std::max(n, 4 * blocks) > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+    throw Error("packed stack: found " + std::to_string(k_count * m * n) + " crossings, expected fewer than 2^31");
   meridians_ = static_cast<int>(m), parallels_ = static_cast<int>(n), blocks_ = static_cast<int>(blocks);
 
   values_.reserve(k_count + m + blocks * block + 1 + k_count * m * (1 + blocks));

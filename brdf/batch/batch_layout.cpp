@@ -7,6 +7,16 @@
 
 namespace gonio {
 
+namespace {
+
+/// Vector code has offsets in bytes of 32 bits.
+void check_size(std::size_t values) {
+  constexpr std::size_t most = std::numeric_limits<int>::max() / sizeof(float);
+  if (values > most) throw Error("batch: found " + std::to_string(values) + " values, expected at most " + std::to_string(most));
+}
+
+}  // namespace
+
 BatchLayout::BatchLayout(const Stack<float>& stack)
     : angles(static_cast<int>(stack.theta_i().size())),
       meridians(0),
@@ -25,8 +35,7 @@ BatchLayout::BatchLayout(const Stack<float>& stack)
   }
   const std::size_t m = static_cast<std::size_t>(meridians), n = static_cast<std::size_t>(parallels);
   const std::size_t block = 3 * m + n + 2 * m * n, size = values.size() + values.size() * block;
-  if (size > static_cast<std::size_t>(std::numeric_limits<int>::max()))
-    throw Error("batch: found " + std::to_string(size) + " values, expected fewer than 2^31");
+  check_size(size);
   stride = static_cast<int>(block);
   values.reserve(size);
   for (const Diagram<float>& d : stack.diagrams()) {
@@ -53,7 +62,10 @@ BatchLayout::BatchLayout(const Stack<float>& stack)
   }
 }
 
+std::size_t BatchLayout::bytes() const noexcept { return values.capacity() * sizeof(float) + guide.capacity() * sizeof(int); }
+
 BatchColour::BatchColour(const Colour& colour) : side(colour.side()), theta_i(colour.theta_i()) {
+  check_size(4 * colour.cells());
   for (const glm::vec3& w : colour.values())
     for (const float channel : {w.r, w.g, w.b, 0.0f}) values.push_back(channel);
 }

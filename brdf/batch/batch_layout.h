@@ -27,6 +27,8 @@ struct BatchLayout {
   std::vector<int> guide;
   int guide_steps;
 
+  std::size_t bytes() const noexcept;  ///< on the heap
+
   int cumulative_phi() const noexcept { return meridians; }
   int mass() const noexcept { return 2 * meridians; }
   int r() const noexcept { return 3 * meridians; }
@@ -42,6 +44,8 @@ struct BatchColour {
   int side;
   std::vector<float> theta_i;
   std::vector<float> values;  ///< angles x side/2 x side x 4
+
+  std::size_t bytes() const noexcept { return (theta_i.capacity() + values.capacity()) * sizeof(float); }  ///< on the heap
 
   /// In cells. The second of two rows or layers is the first one where there is but one.
   int layer() const noexcept { return side * (side / 2); }

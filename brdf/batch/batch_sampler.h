@@ -50,9 +50,7 @@ class BatchSampler {
 
   bool self_contained() const noexcept { return !table_; }
   /// All memory held, the shared table apart.
-  std::size_t bytes() const noexcept {
-    return sizeof(*this) + (layout_.values.capacity() + colour_.values.capacity()) * sizeof(float);
-  }
+  std::size_t bytes() const noexcept { return sizeof(*this) + layout_.bytes() + colour_.bytes(); }
 
  private:
   BatchLayout layout_;

@@ -23,7 +23,7 @@ namespace gonio {
 class BatchStack {
  public:
   /// The stack is copied. @throws Error for Interpolation::mixture, which has no batch form, and for stacks of
-  ///   more than 2^31 values.
+  ///   2^29 values or more.
   explicit BatchStack(const Stack<float>& stack);
 
   /// Stack::sample() of every (theta_i, u, v).
@@ -38,7 +38,7 @@ class BatchStack {
   void invert_n(std::size_t count, const float* theta_i, const float* wo_x, const float* wo_y, const float* wo_z,
                 float* u, float* v, float* pdf) const noexcept;
 
-  std::size_t bytes() const noexcept { return sizeof(*this) + layout_.values.capacity() * sizeof(float); }
+  std::size_t bytes() const noexcept { return sizeof(*this) + layout_.bytes(); }
 
  private:
   BatchLayout layout_;

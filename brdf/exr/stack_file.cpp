@@ -29,6 +29,7 @@
 namespace gonio {
 namespace {
 
+constexpr std::size_t most_values = std::size_t{1} << 26;  // of a part
 constexpr int largest_side = 1 << 14;  // lines or cells a part may have: no real stack comes near
 
 [[noreturn]] void fail(const std::string& file, const std::string& field, const std::string& found,
@@ -100,7 +101,10 @@ std::vector<float> read_pixels(const std::string& file, Imf::MultiPartInputFile&
     if (!channel || channel->type != Imf::FLOAT)
       fail(file, "part " + header.name() + ": channel " + c, "none of type FLOAT", "one");
   }
-  std::vector<float> pixels(channels.size() * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  const std::size_t values = channels.size() * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  if (values > most_values)  // a few bytes of a damaged header would ask for all memory
+    fail(file, "part " + header.name() + ": size", std::to_string(values) + " values", "at most " + std::to_string(most_values));
+  std::vector<float> pixels(values);
   Imf::InputPart part(input, k);
   part.setFrameBuffer(frame_buffer(channels, width, pixels.data()));
   part.readPixels(0, height - 1);
