@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include "png_pixels.h"
+
 namespace gonio {
 namespace {
+
+using Pixels = std::vector<std::array<int, 3>>;
 
 TEST(Difference, RelativeErrorIsThatOfTheChosenPixels) {
   const RgbImage reference{4, 1, std::vector<glm::vec3>(4, glm::vec3(2))};
@@ -20,7 +24,14 @@ TEST(Difference, RelativeErrorIsThatOfTheChosenPixels) {
 TEST(Difference, BlackAgreesWithBlack) {
   const RgbImage black{2, 1, std::vector<glm::vec3>(2, glm::vec3(0))};
   EXPECT_EQ(relative_error(black, black, {0, 1}).relmse, 0);
-  EXPECT_EQ(difference_png(black, black).substr(1, 3), "PNG");
+  EXPECT_EQ(test::png_pixels(difference_png(black, black)), (Pixels(2, {255, 255, 255})));
+}
+
+// A quarter too bright is half of the full colour.
+TEST(Difference, TooBrightIsRedAndTooDarkIsBlue) {
+  const RgbImage reference{4, 1, std::vector<glm::vec3>(4, glm::vec3(2))};
+  const RgbImage image{4, 1, {glm::vec3(2.5f), glm::vec3(9), glm::vec3(1.5f), glm::vec3(0)}};
+  EXPECT_EQ(test::png_pixels(difference_png(image, reference)), (Pixels{{217, 128, 128}, {179, 0, 0}, {128, 128, 217}, {0, 0, 179}}));
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ std::string tone_mapped_png(const RgbImage& image, float exposure) {
   for (glm::vec3 p : image.pixels) {
     p *= exposure;
     const float l = luminance(p);
-    p *= l > 0 && std::isfinite(l) ? (1 + l / (white * white)) / (1 + l) : 0.0f;
+    p = l > 0 && std::isfinite(l) ? p * ((1 + l / (white * white)) / (1 + l)) : glm::vec3(0);
     for (int c = 0; c < 3; ++c) bytes.push_back(static_cast<unsigned char>(std::lround(255 * srgb_curve(std::clamp(p[c], 0.0f, 1.0f)))));
   }
   return encode_png(image.width, image.height, bytes);
