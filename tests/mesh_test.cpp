@@ -2,6 +2,7 @@
 
 #include <gonio/mapping/error.h>
 #include <gonio/mapping/hemisphere.h>
+#include <gonio/tests/table_files.h>
 #include <gtest/gtest.h>
 
 #include <glm/geometric.hpp>
@@ -48,6 +49,26 @@ TEST(Mesh, AMirrorKeepsTheOutsideOutside) {
   transform(sphere, glm::scale(glm::mat4(1.0f), glm::vec3(-2, 1, 1)));
   EXPECT_NEAR(volume(sphere), 2 * before, 1e-2f);
   for (std::size_t k = 0; k < sphere.normals.size(); ++k) EXPECT_GT(glm::dot(sphere.normals[k], sphere.positions[k]), 0);
+}
+
+TEST(Mesh, SmallUnitsAreKept) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "small.obj", "v 0 0 0\nv 1e-6 0 0\nv 1e-6 1e-6 0\nv 0 1e-6 0\nf 1 2 3\nf 1 3 4\n");
+  EXPECT_NEAR(area(load_mesh(folder / "small.obj")), 1e-12f, 1e-17f);
+}
+
+TEST(Mesh, FilesWithIndicesOutOfRangeAreRefused) {
+  const test::TemporaryFolder folder;
+  const auto ply = [](const char* face) {
+    return std::string("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
+                       "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n") + face + "\n";
+  };
+  test::write_file(folder / "good.ply", ply("3 0 1 2"));
+  EXPECT_EQ(load_mesh(folder / "good.ply").triangles.size(), 1u);
+  for (const char* face : {"3 0 1 -1", "3 0 1 3", "3 0 1 1000000000", "4 0 1 2 -1"}) {
+    test::write_file(folder / "bad.ply", ply(face));
+    EXPECT_THROW(load_mesh(folder / "bad.ply"), Error) << face;
+  }
 }
 
 }  // namespace

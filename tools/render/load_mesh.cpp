@@ -20,8 +20,10 @@ glm::vec3 to_vec3(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 
 TriangleMesh load_mesh(const std::filesystem::path& path) {
   Assimp::Importer importer;
-  // Points and lines are sorted out into meshes of their own.
-  const aiScene* scene = importer.ReadFile(path.string(), aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_PreTransformVertices | aiProcess_JoinIdenticalVertices);
+  // Validated, since the other steps trust indices. Points and lines are sorted out into meshes of their own.
+  // Vertices are not joined: Assimp would join those that are nearer than 1e-5, whatever the unit.
+  const aiScene* scene = importer.ReadFile(
+      path.string(), aiProcess_ValidateDataStructure | aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_PreTransformVertices);
   if (!scene) throw Error(path.string() + ": cannot be read as a mesh: " + importer.GetErrorString());
   TriangleMesh result;
   bool normals = true;
