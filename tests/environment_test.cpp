@@ -63,6 +63,7 @@ TEST(Environment, BlackIsNotDrawnFrom) {
 TEST(Environment, RefusesWhatIsNoRadiance) {
   EXPECT_THROW(Environment({1, 1, {glm::vec3(-1)}}, "test"), Error);
   EXPECT_THROW(Environment({1, 1, {glm::vec3(std::nanf(""))}}, "test"), Error);
+  EXPECT_THROW(Environment({1, 1, {glm::vec3(2e12f)}}, "test"), Error);
   EXPECT_THROW(Environment({0, 0, {}}, "test"), Error);
 }
 

@@ -5,6 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <glm/geometric.hpp>
+#include <limits>
+
 namespace gonio {
 namespace {
 
@@ -21,9 +24,9 @@ json good() {
   })");
 }
 
-std::string error_of(const json& scene) {
+std::string error_of(const json& scene, const std::filesystem::path& folder = {}) {
   try {
-    make_scene(scene, "s.json", {});
+    make_scene(scene, "s.json", folder);
   } catch (const Error& error) {
     return error.what();
   }
@@ -47,7 +50,7 @@ TEST(ReadScene, ReadsEveryField) {
   EXPECT_FALSE(scene.materials[scene.objects[1].material].two_sided);
   // Scaled, then turned about x (y to z, z to -y), then moved.
   glm::vec3 low(1e9f), high(-1e9f);
-  for (const glm::vec3& p : scene.objects[0].mesh.positions)
+  for (const glm::vec3& p : scene.objects[0].mesh->positions)
     for (int c = 0; c < 3; ++c) low[c] = std::min(low[c], p[c]), high[c] = std::max(high[c], p[c]);
   for (int c = 0; c < 3; ++c) {
     EXPECT_NEAR(low[c], glm::vec3(-1, -3, 2)[c], 1e-3f);
@@ -78,6 +81,19 @@ TEST(ReadScene, ErrorsNameFileAndField) {
       {with("/objects/0/scale", 0), "s.json: objects[0].scale: found 0"},
       {with("/objects/0/file", "a.obj"), "s.json: objects[0].shape: found file as well"},
       {with("/objects", json::array()), "s.json: objects: found []"},
+      {with("/camera/position", json::array({0, 1e30, 0})), "s.json: camera.position: found [0,1e+30,0], expected three numbers from -1e+09 to 1e+09"},
+      {with("/camera/up", json::array({0, 1e308, 0})), "s.json: camera.up: found"},
+      {with("/environment/turn", 1e30), "s.json: environment.turn: found 1e+30, expected a number from -360 to 360"},
+      {with("/environment/constant", 1e13), "s.json: environment.constant: found 10000000000000.0, expected a number from 0 to 1e+12"},
+      {with("/environment/scale", 1e12), "none"},
+      {with("/environment/constant", 1e12), "s.json: environment: found a radiance of"},
+      {with("/environment", json{{"sky", {{"sun", {0, 0, 1}}, {"radiance", 1e38}}}}), "s.json: environment.sky.radiance: found 1e+38"},
+      {with("/objects/0/emission", 1e38), "s.json: objects[0].emission: found 1e+38"},
+      {with("/objects/0/rotate", json::array({0, 0, 1e6})), "s.json: objects[0].rotate: found"},
+      {with("/objects/0/translate", json::array({0, 0, 1e10})), "s.json: objects[0].translate: found"},
+      {with("/objects/0/scale", 1e-12), "s.json: objects[0].scale: found 1e-12, expected sizes from 1e-09"},
+      {with("/objects/0", {{"shape", "square"}, {"material", "white"}, {"scale", 1e9}, {"translate", {1e9, 0, 0}}}),
+       "s.json: objects[0].shape: found a placed vertex with a coordinate of 2e+09, expected -1e+09 to 1e+09"},
       {with("/lights", json::array({json{{"file", "/nonexistent/lamp.ies"}, {"position", {0, 0, 1}}}})), "/nonexistent/lamp.ies"},
   };
   for (const auto& [scene, message] : cases) EXPECT_THAT(error_of(scene), HasSubstr(message));
@@ -115,13 +131,60 @@ TEST(ReadScene, MeshesAndLightsAreRead) {
   scene["objects"] = {{{"file", "quad.obj"}, {"material", "white"}}, {{"file", "one.ply"}, {"material", "white"}}};
   scene["lights"] = {{{"file", "lamp.ies"}, {"position", {0, 0, 3}}, {"rotate", {90, 0, 0}}, {"scale", 0.5}}};
   const Scene read = make_scene(scene, "s.json", folder.path());
-  EXPECT_EQ(read.objects[0].mesh.triangles.size(), 2u);
-  EXPECT_EQ(read.objects[1].mesh.triangles.size(), 1u);
+  EXPECT_EQ(read.objects[0].mesh->triangles.size(), 2u);
+  EXPECT_EQ(read.objects[1].mesh->triangles.size(), 1u);
   ASSERT_EQ(read.lights.size(), 1u);
   // Turned about x, the nadir (-z) points along +y.
   EXPECT_NEAR((read.lights[0].to_light * glm::vec3(0, 1, 0)).z, -1, 1e-6f);
-  scene["objects"][0]["file"] = "empty.obj";
-  EXPECT_THROW(make_scene(scene, "s.json", folder.path()), Error);
+  test::write_file(folder / "nan.obj", "v nan 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
+  test::write_file(folder / "huge.obj", "v 1e30 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
+  test::write_file(folder / "tiny.obj", "v 0 0 0\nv 1e-12 0 0\nv 0 1e-12 0\nf 1 2 3\n");
+  const std::pair<const char*, const char*> bad[] = {
+      {"empty.obj", "empty.obj"},
+      {"nan.obj", "s.json: objects[0].file: found a placed vertex with a coordinate of nan, expected -1e+09 to 1e+09"},
+      {"huge.obj", "s.json: objects[0].file: found a placed vertex with a coordinate of 1e+30"},
+      {"tiny.obj", "s.json: objects: found a scene of radius 7.07107e-13, expected at least 1e-09"},
+  };
+  for (const auto& [file, message] : bad) {
+    scene["objects"] = {{{"file", file}, {"material", "white"}}};
+    EXPECT_THAT(error_of(scene, folder.path()), HasSubstr(message));
+  }
+}
+
+TEST(ReadScene, AnEnvironmentFromAFile) {
+  const test::TemporaryFolder folder;
+  RgbImage image{8, 4, {}};
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 8; ++column) image.pixels.push_back(row < 2 ? glm::vec3(1, 2, 3) : glm::vec3(column < 4 ? 4 : 8));
+  save_layers(folder / "sky.exr", {{"", {"R", "G", "B"}, &image}});
+  const json environment{{"file", "sky.exr"}, {"scale", {1, 0.5, 2}}};
+  const Scene read = make_scene(with("/environment", environment), "s.json", folder.path());
+  EXPECT_EQ(read.environment->radiance({0, 0, 1}), glm::vec3(1, 1, 6));
+  // Left of the middle column, which looks along +x, is +y.
+  const glm::vec3 left = glm::normalize(glm::vec3(0, 1, -1));
+  EXPECT_EQ(read.environment->radiance(left).r, 4);
+  json turned = with("/environment", environment);
+  turned["environment"]["turn"] = 180;
+  EXPECT_EQ(make_scene(turned, "s.json", folder.path()).environment->radiance(left).r, 8);
+  image.pixels[5].g = std::numeric_limits<float>::infinity();
+  save_layers(folder / "sky.exr", {{"", {"R", "G", "B"}, &image}});
+  EXPECT_THAT(error_of(turned, folder.path()), HasSubstr("sky.exr: found a radiance of inf, expected 0 to 1e12"));
+}
+
+TEST(ReadScene, AMaterialOfFittedLobes) {
+  const test::TemporaryFolder folder;
+  const LobeModel model = parse_model("ggx:alpha=0.3,F0=0.5+lambert:albedo=0.2");
+  test::write_file(folder / "fit.json", to_json(model));
+  json scene = with("/materials/white", {{"file", "fit.json"}});
+  const Scene read = make_scene(scene, "s.json", folder.path());
+  const Material& white = read.materials[read.objects[0].material];
+  EXPECT_EQ(white.sampling, SamplingMethod::lobes1);
+  ASSERT_TRUE(white.table && white.model);
+  const glm::vec3 wi = glm::normalize(glm::vec3(1, 0, 2)), wo = glm::normalize(glm::vec3(-1, 0.3f, 1));
+  EXPECT_NEAR(white.table->eval(wi, wo).g / model.eval(wi, wo).g, 1, 0.01);
+  EXPECT_EQ(MethodBuilder(white.table, white.model).build(white.sampling)->eval(wi, wo), white.table->eval(wi, wo));
+  scene["materials"]["white"]["sampling"] = "lobes2";
+  EXPECT_THAT(error_of(scene, folder.path()), HasSubstr("s.json: materials.white.sampling: found lobes2, expected a method for a model file"));
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ Environment::Environment(RgbImage image, const std::string& name, float turn) : 
   if (image_.pixels.empty()) throw Error(name + ": found an empty image, expected one of the whole sphere");
   for (const glm::vec3& p : image_.pixels)
     for (int c = 0; c < 3; ++c)
-      if (!(p[c] >= 0 && std::isfinite(p[c]))) throw Error(name + ": found a negative or non-finite radiance, expected none");
+      if (!(p[c] >= 0 && static_cast<double>(p[c]) <= max_radiance)) throw Error(name + ": found a radiance of " + std::to_string(p[c]) + ", expected 0 to 1e12");
   rows_.assign(height + 1, 0);
   columns_.assign(height * (width + 1), 0);
   std::vector<double> row(width + 1);

@@ -9,6 +9,9 @@
 
 namespace gonio {
 
+/// What is brighter could make infinities of sums and products.
+inline constexpr double max_radiance = 1e12;
+
 /// Radiance from all directions, as a latitude-longitude image: the top row is round +z, the middle
 /// column looks along +x, columns to the right turn clockwise seen from above (as a panorama is seen
 /// from within). Bilinear between the centres of pixels.
@@ -18,7 +21,7 @@ namespace gonio {
 class Environment {
  public:
   /// @param turn [rad] by which the image is turned about z, counter-clockwise seen from above
-  /// @throws Error if the image is empty or a value is negative or not finite; `name` for messages.
+  /// @throws Error if the image is empty or a value is not from 0 to max_radiance; `name` for messages.
   Environment(RgbImage image, const std::string& name, float turn = 0);
 
   /// @param direction unit vector, in the world

@@ -1,6 +1,5 @@
 #include <gonio/tools/render/json_fields.h>
 
-#include <cmath>
 #include <sstream>
 
 #include <gonio/mapping/error.h>
@@ -15,16 +14,12 @@ std::string shown(const nlohmann::json& value) {
 
 std::string range_of(double low, double high) {
   std::ostringstream text;
-  if (low > -1e29 && high < 1e29) {
-    text << " from " << low << " to " << high;
-  } else if (low > -1e29) {
-    text << " from " << low;
-  }
+  text << " from " << low << " to " << high;
   return text.str();
 }
 
 bool in_range(const nlohmann::json& value, double low, double high) {
-  return value.is_number() && std::isfinite(value.get<double>()) && value.get<double>() >= low && value.get<double>() <= high;
+  return value.is_number() && value.get<double>() >= low && value.get<double>() <= high;
 }
 
 }  // namespace

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <glm/vec3.hpp>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 
 namespace gonio {
+
+/// The range of numbers that have no other: the cube of such a length is a float still.
+inline constexpr double json_limit = 1e9;
 
 /// Reads the members of a JSON object; every message names the file and the path of the member.
 /// Members that nobody asked for are an error in finish().
@@ -23,12 +25,12 @@ class JsonFields {
   const nlohmann::json& at(const char* key);
   JsonFields object(const char* key) { return JsonFields(at(key), where(key)); }
   std::string text(const char* key);
-  double number(const char* key, double low = -std::numeric_limits<double>::max(), double high = std::numeric_limits<double>::max());
+  double number(const char* key, double low = -json_limit, double high = json_limit);
   bool boolean(const char* key);
   /// An array of three numbers.
-  glm::vec3 triple(const char* key, double low = -1e30, double high = 1e30);
+  glm::vec3 triple(const char* key, double low = -json_limit, double high = json_limit);
   /// A triple, or one number that stands for three.
-  glm::vec3 triple_or_number(const char* key, double low = -1e30, double high = 1e30);
+  glm::vec3 triple_or_number(const char* key, double low = -json_limit, double high = json_limit);
 
   /// @throws Error if there is a member that none of the above was called for.
   void finish() const;

@@ -67,23 +67,26 @@ PathResult PathTracer::trace(float x, float y, PathSequence& random) const noexc
     if (outside && luminance(object.emission) > 0)
       result.radiance += throughput * object.emission * (bounce == 0 ? 1.0f : weight(lights_.pdf_triangle(*hit, direction)));
     const Material& material = scene_.materials[object.material];
+    // Those of the side that is seen; the path goes on from just off it.
     const float flip = outside ? 1.0f : -1.0f;
-    if (bounce == 0) result.normal = flip * hit->shading_normal;
+    const glm::vec3 normal = flip * hit->normal, shading_normal = flip * hit->shading_normal;
+    origin = hit->position + hit->step * normal;
+    if (bounce == 0) result.normal = shading_normal;
     if (bounce > max_bounces_ || (!outside && !material.two_sided)) return result;
 
-    const glm::mat3 frame = frame_of(flip * hit->shading_normal);
+    const glm::mat3 frame = frame_of(shading_normal);
     const glm::vec3 wi = -direction * frame;
     // Always the same number of decisions a surface, so that one does not take another's dimension.
     const glm::vec2 choice = random.next(), light_u = random.next(), u = random.next();
     if (!(wi.z > 0)) return result;  // seen from behind the shading normal
-    result.radiance += throughput * direct_light(*hit, material, frame, wi, flip, choice.x, light_u);
+    result.radiance += throughput * direct_light(origin, normal, *material.bsdf, frame, wi, choice.x, light_u);
 
     const auto s = material.bsdf->sample(wi, u);
     if (!s) return result;
     if (bounce == 0) result.albedo = s->weight;
     direction = glm::normalize(frame * s->wo);
     // Below the triangle, though above the shading normal's horizon.
-    if (!(flip * glm::dot(direction, hit->normal) > 0)) return result;
+    if (!(glm::dot(direction, normal) > 0)) return result;
     throughput *= s->weight;
     pdf = s->pdf;
     if (bounce >= 3) {
@@ -91,23 +94,22 @@ PathResult PathTracer::trace(float x, float y, PathSequence& random) const noexc
       if (!(choice.y < survive)) return result;
       throughput /= survive;
     }
-    origin = World::off_surface(*hit, direction);
   }
 }
 
-glm::vec3 PathTracer::direct_light(const Hit& hit, const Material& material, const glm::mat3& frame, const glm::vec3& wi, float flip, float pick,
-                                   glm::vec2 u) const noexcept {
-  const auto light = lights_.sample(hit.position, pick, u);
+glm::vec3 PathTracer::direct_light(const glm::vec3& from, const glm::vec3& normal, const Bsdf& bsdf, const glm::mat3& frame, const glm::vec3& wi,
+                                   float pick, glm::vec2 u) const noexcept {
+  const auto light = lights_.sample(from, pick, u);
   if (!light || !(light->pdf > 0)) return glm::vec3(0);
   if (strategy_ == Strategy::bsdf && !light->delta) return glm::vec3(0);
   const glm::vec3 wo = light->direction * frame;
-  if (!(wo.z > 0) || !(flip * glm::dot(light->direction, hit.normal) > 0)) return glm::vec3(0);
-  const glm::vec3 value = material.bsdf->eval(wi, wo) * wo.z * light->radiance / light->pdf;
+  if (!(wo.z > 0) || !(glm::dot(light->direction, normal) > 0)) return glm::vec3(0);
+  const glm::vec3 value = bsdf.eval(wi, wo) * wo.z * light->radiance / light->pdf;
   if (!(luminance(value) > 0)) return glm::vec3(0);
-  const glm::vec3 from = World::off_surface(hit, light->direction);
+  // A little short of it: a lamp may lie on a ceiling.
   if (world_->occluded(from, light->direction, light->distance * (1 - 1e-4f))) return glm::vec3(0);
   const bool alone = light->delta || strategy_ == Strategy::light;
-  return alone ? value : value * power_heuristic(light->pdf, material.bsdf->pdf(wi, wo));
+  return alone ? value : value * power_heuristic(light->pdf, bsdf.pdf(wi, wo));
 }
 
 }  // namespace gonio

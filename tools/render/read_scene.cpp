@@ -1,9 +1,11 @@
 #include <gonio/tools/render/read_scene.h>
 
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <map>
+#include <sstream>
 
 #include <gonio/brdf/bytes.h>
 #include <gonio/brdf/exr/stack_file.h>
@@ -18,6 +20,13 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr float degree = pi<float> / 180;
+constexpr double smallest = 1e-9;  // length, and factor of lengths: the cube of such a length is a float still
+
+std::string number(double x) {
+  std::ostringstream text;
+  text << x;
+  return text.str();
+}
 
 class SceneReader {
  public:
@@ -66,17 +75,18 @@ class SceneReader {
       JsonFields sky = f.object("sky");
       const glm::vec3 sun = sky.triple("sun");
       if (!(glm::length(sun) > 0)) sky.fail("sun", "no direction", "a vector towards the sun");
-      const double radius = sky.has("radius") ? sky.number("radius", 0.5, 45) : 2.5, radiance = sky.has("radiance") ? sky.number("radiance", 0) : 300;
+      const double radius = sky.has("radius") ? sky.number("radius", 0.5, 45) : 2.5;
+      const double radiance = sky.has("radiance") ? sky.number("radiance", 0, max_radiance) : 300;
       sky.finish();
       image = make_sky(glm::normalize(sun), degree * static_cast<float>(radius), static_cast<float>(radiance));
     } else if (f.has("constant")) {
-      image = {4, 2, std::vector<glm::vec3>(8, f.triple_or_number("constant", 0))};
+      image = {4, 2, std::vector<glm::vec3>(8, f.triple_or_number("constant", 0, max_radiance))};
     } else {
       f.fail("file", "none", "file, sky or constant");
     }
-    const glm::vec3 scale = f.has("scale") ? f.triple_or_number("scale", 0) : glm::vec3(1);
+    const glm::vec3 scale = f.has("scale") ? f.triple_or_number("scale", 0, max_radiance) : glm::vec3(1);
     for (glm::vec3& p : image.pixels) p *= scale;
-    const float turn = f.has("turn") ? degree * static_cast<float>(f.number("turn")) : 0;
+    const float turn = f.has("turn") ? degree * static_cast<float>(f.number("turn", -360, 360)) : 0;
     f.finish();
     scene_.environment = std::make_shared<const Environment>(std::move(image), name, turn);
   }
@@ -119,7 +129,7 @@ class SceneReader {
       const auto method = parse_sampling_method(name);
       if (!method) f.fail("sampling", "'" + name + "'", "one of " + sampling_method_names());
       m.sampling = *method;
-      if (!MethodBuilder(m.table).available(m.sampling)) f.fail("sampling", "rgl", "a method for a " + m.table->info().format + " file");
+      if (!MethodBuilder(m.table, m.model).available(m.sampling)) f.fail("sampling", name, "a method for a " + m.table->info().format + " file");
     }
   }
 
@@ -127,14 +137,15 @@ class SceneReader {
     glm::mat4 m(1.0f);
     if (f.has("translate") && scaled) m = glm::translate(m, f.triple("translate"));
     if (f.has("rotate")) {
-      const glm::vec3 angles = f.triple("rotate") * degree;
+      const glm::vec3 angles = f.triple("rotate", -360, 360) * degree;
       m = glm::rotate(m, angles.z, glm::vec3(0, 0, 1));
       m = glm::rotate(m, angles.y, glm::vec3(0, 1, 0));
       m = glm::rotate(m, angles.x, glm::vec3(1, 0, 0));
     }
     if (f.has("scale") && scaled) {
       const glm::vec3 scale = f.triple_or_number("scale");
-      if (scale.x * scale.y * scale.z == 0.0f) f.fail("scale", "0", "another number");
+      for (int c = 0; c < 3; ++c)
+        if (std::abs(scale[c]) < static_cast<float>(smallest)) f.fail("scale", f.at("scale").dump(), "sizes from " + number(smallest));
       m = glm::scale(m, scale);
     }
     return m;
@@ -143,20 +154,31 @@ class SceneReader {
   void objects() {
     const nlohmann::json& all = fields_.at("objects");
     if (!all.is_array() || all.empty()) fields_.fail("objects", all.dump().substr(0, 40), "an array of objects");
+    glm::vec3 low(json_limit), high(-json_limit);
     for (std::size_t k = 0; k < all.size(); ++k) {
       JsonFields f(all[k], fields_.where("objects[" + std::to_string(k) + "]"));
       Object object;
       if (f.has("shape") == f.has("file")) f.fail("shape", f.has("shape") ? "file as well" : "none", "shape or file");
-      object.mesh = f.has("shape") ? make_shape(f.text("shape"), f.where("shape")) : load_mesh(file(f));
-      transform(object.mesh, placement(f, true));
+      TriangleMesh mesh = f.has("shape") ? make_shape(f.text("shape"), f.where("shape")) : load_mesh(file(f));
+      transform(mesh, placement(f, true));
+      for (const glm::vec3& p : mesh.positions) {
+        for (int c = 0; c < 3; ++c)
+          if (!(std::abs(static_cast<double>(p[c])) <= json_limit))
+            f.fail(f.has("shape") ? "shape" : "file", "a placed vertex with a coordinate of " + number(static_cast<double>(p[c])),
+                   number(-json_limit) + " to " + number(json_limit));
+        low = glm::min(low, p), high = glm::max(high, p);
+      }
+      object.mesh = std::make_shared<const TriangleMesh>(std::move(mesh));
       const std::string material = f.text("material");
       const auto found = index_.find(material);
       if (found == index_.end()) f.fail("material", "'" + material + "'", "the name of one of the materials");
       object.material = found->second;
-      if (f.has("emission")) object.emission = f.triple_or_number("emission", 0);
+      if (f.has("emission")) object.emission = f.triple_or_number("emission", 0, max_radiance);
       f.finish();
       scene_.objects.push_back(std::move(object));
     }
+    const double radius = static_cast<double>(glm::length(high - low)) / 2;
+    if (!(radius >= smallest)) fields_.fail("objects", "a scene of radius " + number(radius), "at least " + number(smallest));
   }
 
   void lights() {
@@ -169,7 +191,7 @@ class SceneReader {
       light.emission = std::make_shared<const EmissionSampler<float>>(load_any_light(file(f), {}, deviations).diagram);
       light.position = f.triple("position");
       light.to_light = glm::transpose(glm::mat3(placement(f, false)));
-      light.scale = f.has("scale") ? f.triple_or_number("scale", 0) : glm::vec3(1);
+      light.scale = f.has("scale") ? f.triple_or_number("scale", 0, max_radiance) : glm::vec3(1);
       f.finish();
       scene_.lights.push_back(std::move(light));
     }

@@ -33,13 +33,14 @@ MethodBuilder::MethodBuilder(std::shared_ptr<const BrdfTable> table, std::option
 }
 
 bool MethodBuilder::available(SamplingMethod method) const noexcept {
-  return method != SamplingMethod::rgl || std::holds_alternative<RglTable>(table_->data());
+  if (method == SamplingMethod::rgl) return std::holds_alternative<RglTable>(table_->data());
+  return !given_ || (method != SamplingMethod::lobes2 && method != SamplingMethod::lobes3);
 }
 
 const LobeModel& MethodBuilder::lobes(std::size_t count) {
   if (fits_.empty())
     for (StageFit& stage : fit_table(*table_, parse_model(default_fit_form)).stages) fits_.push_back(std::move(stage.fit.model));
-  return fits_[given_ ? 0 : std::min(count, fits_.size()) - 1];
+  return fits_.at(count - 1);
 }
 
 const StackGrid& MethodBuilder::outgoing(const Progress& progress) {
@@ -48,8 +49,9 @@ const StackGrid& MethodBuilder::outgoing(const Progress& progress) {
 }
 
 std::shared_ptr<const Bsdf> MethodBuilder::build(SamplingMethod method, const Progress& progress) {
+  if (!available(method)) throw Error(table_->info().source + ": sampling: found " + to_string(method) + ", expected a method for a " + table_->info().format + " file");
   switch (method) {
-    case SamplingMethod::automatic: return make_bsdf(Sampler(table_, StackOptions{}, progress));
+    case SamplingMethod::automatic: return make_bsdf(Sampler(table_, progress));
     case SamplingMethod::cosine: return make_bsdf(CosineSampler(table_));
     case SamplingMethod::lobes1: return make_bsdf(LobeSampler(table_, lobes(1)));
     case SamplingMethod::lobes2: return make_bsdf(LobeSampler(table_, lobes(2)));

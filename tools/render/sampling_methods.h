@@ -39,7 +39,8 @@ class MethodBuilder {
   /// @param options of the stacks, but for the default's, which are the library's own
   explicit MethodBuilder(std::shared_ptr<const BrdfTable> table, std::optional<LobeModel> model = {}, const StackOptions& options = {});
 
-  /// False for `rgl` and a table that is not RGL.
+  /// False for `rgl` and a table that is not RGL, and for numbers of lobes other than the first where the
+  /// lobes are known already.
   bool available(SamplingMethod method) const noexcept;
 
   /// @throws Error if it is not available, or the table is black and lobes are asked for.

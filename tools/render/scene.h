@@ -35,7 +35,7 @@ struct Material {
 };
 
 struct Object {
-  TriangleMesh mesh;        ///< in the world
+  std::shared_ptr<const TriangleMesh> mesh;  ///< in the world
   std::size_t material = 0;
   glm::vec3 emission{0};    ///< radiance of the outside
 };

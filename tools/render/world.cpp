@@ -25,6 +25,11 @@ RTCRay make_ray(const glm::vec3& o, const glm::vec3& d, float distance) {
 
 }  // namespace
 
+float step_off(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) noexcept {
+  const glm::vec3 size = glm::max(glm::abs(a), glm::max(glm::abs(b), glm::abs(c)));
+  return 4e-6f * std::max(size.x, std::max(size.y, size.z));
+}
+
 struct World::Embree {
   RTCDevice device = rtcNewDevice(nullptr);
   RTCScene scene = device ? rtcNewScene(device) : nullptr;
@@ -39,7 +44,7 @@ World::World(const Scene& scene) : scene_(scene), embree_(std::make_unique<Embre
   // Robust: rays through edges that triangles share do not pass between them.
   rtcSetSceneFlags(embree_->scene, RTC_SCENE_FLAG_ROBUST);
   for (const Object& object : scene.objects) {
-    const TriangleMesh& mesh = object.mesh;
+    const TriangleMesh& mesh = *object.mesh;
     const RTCGeometry geometry = rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
     void* positions = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), mesh.positions.size());
     void* triangles = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(mesh.triangles[0]), mesh.triangles.size());
@@ -68,16 +73,17 @@ std::optional<Hit> World::intersect(const glm::vec3& origin, const glm::vec3& di
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(embree_->scene, &context, &query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-  const TriangleMesh& mesh = scene_.objects[query.hit.geomID].mesh;
+  const TriangleMesh& mesh = *scene_.objects[query.hit.geomID].mesh;
   const auto& t = mesh.triangles[query.hit.primID];
-  const glm::vec3 a = mesh.positions[t[0]], ab = mesh.positions[t[1]] - a, ac = mesh.positions[t[2]] - a;
+  const glm::vec3 a = mesh.positions[t[0]], b = mesh.positions[t[1]], c = mesh.positions[t[2]], ab = b - a, ac = c - a;
   const float u = query.hit.u, v = query.hit.v;
   Hit hit;
   hit.object = query.hit.geomID;
   hit.triangle = query.hit.primID;
   hit.distance = query.ray.tfar;
   hit.position = a + u * ab + v * ac;  // more accurate than along the ray
-  hit.normal = glm::normalize(glm::cross(ab, ac));
+  hit.step = step_off(a, b, c);
+  hit.normal = glm::vec3(glm::normalize(glm::cross(glm::dvec3(ab), glm::dvec3(ac))));  // a float's square of an area underflows early
   hit.shading_normal = hit.normal;
   if (!mesh.normals.empty()) {
     const glm::vec3 n = (1 - u - v) * mesh.normals[t[0]] + u * mesh.normals[t[1]] + v * mesh.normals[t[2]];
@@ -92,13 +98,6 @@ bool World::occluded(const glm::vec3& origin, const glm::vec3& direction, float 
   RTCRay ray = make_ray(origin, direction, distance);
   rtcOccluded1(embree_->scene, &context, &ray);
   return ray.tfar < 0;
-}
-
-glm::vec3 World::off_surface(const Hit& hit, const glm::vec3& direction) noexcept {
-  // Some tens of units in the last place of the coordinates.
-  const glm::vec3 size = glm::abs(hit.position);
-  const float step = 4e-6f * (1 + std::max(size.x, std::max(size.y, size.z)));
-  return hit.position + (glm::dot(direction, hit.normal) > 0 ? step : -step) * hit.normal;
 }
 
 }  // namespace gonio

@@ -13,7 +13,12 @@ struct Hit {
   glm::vec3 shading_normal;    ///< interpolated, unit, on the side of `normal`
   std::size_t object, triangle;
   float distance;
+  float step;  ///< along the normal, to a point from where rays do not meet the triangle again
 };
+
+/// That step for a triangle: some tens of units in the last place of its coordinates, so that it follows
+/// the unit of length.
+float step_off(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) noexcept;
 
 /// The scene's triangles in Embree. Thread safety: immutable; concurrent use is safe.
 class World {
@@ -27,9 +32,6 @@ class World {
   /// @param direction unit
   std::optional<Hit> intersect(const glm::vec3& origin, const glm::vec3& direction) const noexcept;
   bool occluded(const glm::vec3& origin, const glm::vec3& direction, float distance) const noexcept;
-
-  /// The point moved off its surface to the side of `direction`, far enough not to meet it again.
-  static glm::vec3 off_surface(const Hit& hit, const glm::vec3& direction) noexcept;
 
   float radius() const noexcept { return radius_; }  ///< of a sphere round all triangles
 
