@@ -1,5 +1,6 @@
 // Runs the verbs render and compare of the program GONIO_TOOL as a user does.
 
+#include <gonio/fitting/model.h>
 #include <gonio/tests/table_files.h>
 #include <gonio/tools/render/exr_image.h>
 #include <gtest/gtest.h>
@@ -17,7 +18,8 @@ class RenderTool : public testing::Test {
     test::write_file(folder_ / "grey.mbsdf", test::make_mbsdf(1, 6, 8, std::vector<float>(3 * 6 * 6 * 8, 0.5f / static_cast<float>(test::pi))));
   }
   int run(const std::string& arguments, const std::string& verb = "render") const {
-    const int status = std::system(("cd '" + folder_.path().string() + "' && '" GONIO_TOOL "' " + verb + " " + arguments + " >out 2>err").c_str());
+    // An error that is found after long work, not before it, comes as the 124 of timeout.
+    const int status = std::system(("cd '" + folder_.path().string() + "' && timeout 100 '" GONIO_TOOL "' " + verb + " " + arguments + " >out 2>err").c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
   std::string text(const std::string& name) const { return test::file_bytes(folder_ / name); }
@@ -44,6 +46,21 @@ TEST_F(RenderTool, AScene) {
   for (const glm::vec3& p : load_rgb(folder_ / "a.exr").pixels) EXPECT_NEAR(p.g, 0.5f, 0.01f);
 }
 
+// A white furnace of each kind of material file, in an environment from a file.
+TEST_F(RenderTool, MaterialsAndEnvironmentFromFiles) {
+  test::write_file(folder_ / "fit.json", to_json(parse_model("lambert:albedo=0.5")));
+  ASSERT_EQ(run("grey.mbsdf stack.exr --incident 4", "convert"), 0) << text("err");
+  const RgbImage sky{4, 2, std::vector<glm::vec3>(8, glm::vec3(0.5f, 1, 2))};
+  save_layers(folder_ / "sky.exr", {{"", {"R", "G", "B"}, &sky}});
+  for (const std::string file : {"grey.mbsdf", "stack.exr", "fit.json"}) {
+    test::write_file(folder_ / "s.json", R"({"camera": {"position": [0, 0, 3], "target": [0, 0, 0], "up": [0, 1, 0], "vertical_fov": 10, "resolution": [8, 8]},
+      "environment": {"file": "sky.exr", "turn": 30}, "materials": {"m": {"file": ")" + file + R"("}}, "objects": [{"shape": "square", "material": "m"}]})");
+    ASSERT_EQ(run("s.json --samples 256 -o a.exr"), 0) << text("err");
+    for (const glm::vec3& p : load_rgb(folder_ / "a.exr").pixels)
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(p[c] / sky.pixels[0][c], 0.5f, 0.01f) << file;
+  }
+}
+
 // The comparison holds what docs/render.md says, and its page needs no other file.
 TEST_F(RenderTool, Compare) {
   ASSERT_EQ(run("--material grey.mbsdf --size 16x16 --seconds 0.05 --reference-seconds 0.2 --methods default,cosine -o c", "compare"), 0) << text("err");
@@ -65,8 +82,29 @@ TEST_F(RenderTool, Compare) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "d"));
 }
 
+TEST_F(RenderTool, ANameThatIsNotUtf8) {
+  const std::string name = "gr\xFFy";
+  std::filesystem::rename(folder_ / "grey.mbsdf", folder_ / (name + ".mbsdf"));
+  ASSERT_EQ(run("--material " + name + ".mbsdf --size 8x8 --seconds 0.02 --methods cosine -o c", "compare"), 0) << text("err");
+  EXPECT_EQ(nlohmann::json::parse(text("c/compare.json"))["scene"], "gr\uFFFDy");
+}
+
+TEST_F(RenderTool, OutputsThatCannotBeWrittenAreFoundBeforeTheWork) {
+  std::filesystem::create_directory(folder_ / "folder.exr");
+  // Root may write to any real folder; /proc takes no files.
+  EXPECT_EQ(run("--material grey.mbsdf --samples 16777216 -o /proc/a.exr"), 1);
+  EXPECT_NE(text("err").find("/proc/a.exr: folder: found none that takes files"), std::string::npos) << text("err");
+  EXPECT_EQ(run("--material grey.mbsdf --samples 16777216 -o folder.exr"), 1);
+  EXPECT_NE(text("err").find("folder.exr: found a folder"), std::string::npos) << text("err");
+  EXPECT_EQ(run("--material grey.mbsdf --methods cosine --seconds 100000 -o /proc", "compare"), 1);
+  EXPECT_NE(text("err").find("/proc/compare.html: folder: found none that takes files"), std::string::npos) << text("err");
+  EXPECT_EQ(run("--material grey.mbsdf --methods cosine --seconds 100000 -o grey.mbsdf", "compare"), 1);
+  EXPECT_NE(text("err").find("grey.mbsdf: cannot be made a folder"), std::string::npos) << text("err");
+}
+
 TEST_F(RenderTool, ErrorsAreOneLineAndLeaveNoFile) {
   test::write_file(folder_ / "s.json", R"({"materials": {}, "objects": []})");
+  test::write_file(folder_ / "fit.json", to_json(parse_model("ggx:alpha=0.3+lambert:albedo=0.5")));
   const std::pair<const char*, const char*> cases[] = {
       {"", "SCENE: found none, expected SCENE.json or --material FILE"},
       {"s.json --material grey.mbsdf", "SCENE: found one and --material"},
@@ -74,7 +112,12 @@ TEST_F(RenderTool, ErrorsAreOneLineAndLeaveNoFile) {
       {"--material none.bsdf", "none.bsdf"},
       {"--material grey.mbsdf --samples 0", "--samples: found 0"},
       {"--material grey.mbsdf --sampling best", "--sampling: found 'best', expected one of default, cosine"},
-      {"--material grey.mbsdf --sampling rgl", "rgl"},
+      {"--material grey.mbsdf --sampling rgl", "grey.mbsdf: sampling: found rgl, expected a method for a mbsdf file"},
+      {"--material fit.json --sampling lobes2", "fit.json: sampling: found lobes2, expected a method for a model file"},
+      {"--material grey.mbsdf --exposure nan", "--exposure: found nan"},
+      {"--material grey.mbsdf --seconds inf", "--seconds: found inf"},
+      {"--material grey.mbsdf --bounces -1", "--bounces: found -1"},
+      {"--material grey.mbsdf --threads -1", "--threads: found -1"},
   };
   for (const auto& [arguments, message] : cases) {
     EXPECT_EQ(run(std::string(arguments) + " -o x.exr"), 1) << arguments;

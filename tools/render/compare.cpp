@@ -9,6 +9,7 @@
 
 #include <gonio/mapping/error.h>
 #include <gonio/tools/progress.h>
+#include <gonio/tools/render/check_writable.h>
 #include <gonio/tools/render/compare_runs.h>
 #include <gonio/tools/render/load_scene.h>
 #include <gonio/tools/render/write_compare.h>
@@ -24,8 +25,15 @@ struct Options {
   CompareOptions compare;
 };
 
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code failed;
+  std::filesystem::create_directories(folder, failed);
+  if (failed) throw Error(folder.string() + ": cannot be made a folder: " + failed.message());
+  check_writable(folder / "compare.html");
+}
+
 bool available(const Scene& scene, SamplingMethod method) {
-  return std::all_of(scene.materials.begin(), scene.materials.end(), [&](const Material& m) { return !m.table || MethodBuilder(m.table).available(method); });
+  return std::all_of(scene.materials.begin(), scene.materials.end(), [&](const Material& m) { return !m.table || MethodBuilder(m.table, m.model).available(method); });
 }
 
 std::vector<SamplingMethod> parse_methods(const std::vector<std::string>& names, const Scene& scene) {
@@ -44,8 +52,10 @@ std::vector<SamplingMethod> parse_methods(const std::vector<std::string>& names,
 
 void compare(Options& options) {
   CompareOptions& o = options.compare;
-  if (!(o.seconds > 0)) throw Error("--seconds: found " + std::to_string(o.seconds) + ", expected more than 0");
-  if (!(options.reference_seconds >= 0)) throw Error("--reference-seconds: found " + std::to_string(options.reference_seconds) + ", expected more than 0");
+  if (!(o.seconds > 0 && o.seconds <= 1e9)) throw Error("--seconds: found " + std::to_string(o.seconds) + ", expected more than 0, to 1e9");
+  if (!(options.reference_seconds >= 0 && options.reference_seconds <= 1e9))
+    throw Error("--reference-seconds: found " + std::to_string(options.reference_seconds) + ", expected 0 to 1e9");
+  check_render_options(o.render);
   o.reference_seconds = options.reference_seconds > 0 ? options.reference_seconds : 16 * o.seconds;
   const std::string name = std::filesystem::path(options.choice.scene.empty() ? options.choice.material : options.choice.scene).stem().string();
   Comparison comparison;
@@ -53,6 +63,7 @@ void compare(Options& options) {
     ProgressLine line("rendering " + name);
     const Scene scene = options.choice.load();
     o.methods = parse_methods(options.methods, scene);
+    make_folder(options.out);
     comparison = compare_methods(scene, o, [&](double share) { line.update(share); });
   }
   write_comparison(options.out, comparison, name, o);
@@ -74,9 +85,7 @@ void add_compare(CLI::App& app) {
   verb->add_option("--methods", options->methods, "Sampling methods, separated by commas, of " + sampling_method_names() + "; without it, all")->delimiter(',');
   verb->add_option("--seconds", options->compare.seconds, "Processor time of each render, all threads together")->capture_default_str();
   verb->add_option("--reference-seconds", options->reference_seconds, "Processor time of the reference; without it, 16 times that of a render");
-  verb->add_option("--bounces", options->compare.render.max_bounces, "Surfaces after the first one, at most")->capture_default_str();
-  verb->add_option("--seed", options->compare.render.seed, "Seed")->capture_default_str();
-  verb->add_option("--threads", options->compare.render.threads, "Threads, at most one for each core; 0: as many")->capture_default_str();
+  add_render_options(*verb, options->compare.render);
   verb->footer(
       "Examples:\n"
       "  gonio compare --material satin.bsdf --seconds 10 -o satin\n"

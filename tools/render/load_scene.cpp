@@ -28,4 +28,15 @@ void add_scene_choice(CLI::App& verb, SceneChoice& choice) {
   add_cell_policies(verb, choice.policies);
 }
 
+void add_render_options(CLI::App& verb, RenderOptions& options) {
+  verb.add_option("--bounces", options.max_bounces, "Surfaces after the first one, at most")->capture_default_str();
+  verb.add_option("--seed", options.seed, "Seed; the same one gives the same picture")->capture_default_str();
+  verb.add_option("--threads", options.threads, "Threads, at most one for each core; 0: as many")->capture_default_str();
+}
+
+void check_render_options(const RenderOptions& options) {
+  if (options.max_bounces < 0) throw Error("--bounces: found " + std::to_string(options.max_bounces) + ", expected a number from 0");
+  if (options.threads < 0) throw Error("--threads: found " + std::to_string(options.threads) + ", expected a number from 0");
+}
+
 }  // namespace gonio

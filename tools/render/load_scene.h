@@ -4,6 +4,7 @@
 #include <string>
 
 #include <gonio/brdf/cells.h>
+#include <gonio/tools/render/film.h>
 #include <gonio/tools/render/scene.h>
 
 namespace gonio {
@@ -19,5 +20,11 @@ struct SceneChoice {
 
 /// SCENE, --material, --size and the policies for cells. `choice` must outlive the parsing.
 void add_scene_choice(CLI::App& verb, SceneChoice& choice);
+
+/// --bounces, --seed and --threads. `options` must outlive the parsing.
+void add_render_options(CLI::App& verb, RenderOptions& options);
+
+/// @throws Error if one of them is out of range.
+void check_render_options(const RenderOptions& options);
 
 }  // namespace gonio

@@ -11,6 +11,7 @@
 #include <gonio/mapping/error.h>
 #include <gonio/tools/options.h>
 #include <gonio/tools/progress.h>
+#include <gonio/tools/render/check_writable.h>
 #include <gonio/tools/render/film.h>
 #include <gonio/tools/render/load_scene.h>
 #include <gonio/tools/render/tone_map.h>
@@ -64,9 +65,10 @@ void save(const Options& options, const std::string& extension, const Film& film
 void render(const Options& options) {
   const std::string extension = checked_extension(options.out, {".exr", ".png"});
   if (options.samples < 1 || options.samples > (1 << 24)) throw Error("--samples: found " + std::to_string(options.samples) + ", expected 1 to 16777216");
-  if (!(options.seconds >= 0)) throw Error("--seconds: found " + std::to_string(options.seconds) + ", expected a number from 0");
-  if (options.render.max_bounces < 0) throw Error("--bounces: found " + std::to_string(options.render.max_bounces) + ", expected a number from 0");
-  if (options.render.threads < 0) throw Error("--threads: found " + std::to_string(options.render.threads) + ", expected a number from 0");
+  if (!(options.seconds >= 0 && options.seconds <= 1e9)) throw Error("--seconds: found " + std::to_string(options.seconds) + ", expected 0 to 1e9");
+  if (!(options.exposure > 0 && options.exposure <= 1e9f)) throw Error("--exposure: found " + std::to_string(options.exposure) + ", expected more than 0, to 1e9");
+  check_render_options(options.render);
+  check_writable(options.out);
   const Clock preparing;
   Scene scene = [&] {
     const ProgressLine line("reading the scene");
@@ -106,10 +108,8 @@ void add_render(CLI::App& app) {
   verb->add_option("--samples", options->samples, "Paths a pixel")->capture_default_str();
   verb->add_option("--seconds", options->seconds, "Time for rendering, instead of a number of samples");
   verb->add_option("--sampling", options->sampling, "Sampling method of all tables, instead of the scene's: " + sampling_method_names());
-  verb->add_option("--bounces", options->render.max_bounces, "Surfaces after the first one, at most")->capture_default_str();
   verb->add_option("--exposure", options->exposure, "Factor of radiances in a .png")->capture_default_str();
-  verb->add_option("--seed", options->render.seed, "Seed; the same one gives the same picture")->capture_default_str();
-  verb->add_option("--threads", options->render.threads, "Threads, at most one for each core; 0: as many")->capture_default_str();
+  add_render_options(*verb, options->render);
   verb->footer(
       "Examples:\n"
       "  gonio render --material satin.bsdf -o satin.png\n"

@@ -5,7 +5,6 @@
 #include <ostream>
 
 #include <gonio/mapping/atomic_file.h>
-#include <gonio/mapping/error.h>
 #include <gonio/tools/base64.h>
 #include <gonio/tools/render/difference.h>
 #include <gonio/tools/render/tone_map.h>
@@ -94,9 +93,6 @@ json to_json(const Comparison& c, const std::string& scene, const CompareOptions
 }
 
 void write_comparison(const std::filesystem::path& folder, const Comparison& c, const std::string& scene, const CompareOptions& options) {
-  std::error_code failed;
-  std::filesystem::create_directories(folder, failed);
-  if (failed) throw Error(folder.string() + ": cannot be made a folder: " + failed.message());
   const json j = to_json(c, scene, options);
   json page = j;
   const auto picture = [&](const std::string& name, const std::string& png) {
@@ -109,7 +105,7 @@ void write_comparison(const std::filesystem::path& folder, const Comparison& c, 
     page["runs"][k]["picture"] = picture(name, tone_mapped_png(c.runs[k].image));
     page["runs"][k]["difference"] = picture(name + "_difference", difference_png(c.runs[k].image, c.reference));
   }
-  write_stream_atomically(folder / "compare.json", [&](std::ostream& out) { out << j.dump(1) << '\n'; });
+  write_stream_atomically(folder / "compare.json", [&](std::ostream& out) { out << j.dump(1, ' ', false, json::error_handler_t::replace) << '\n'; });
   write_stream_atomically(folder / "compare.md", [&](std::ostream& out) { write_markdown(out, j); });
   write_stream_atomically(folder / "compare.html", [&](std::ostream& out) { write_compare_page(out, page); });
 }
