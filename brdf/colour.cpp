@@ -7,6 +7,7 @@
 #include <gonio/brdf/parallel.h>
 #include <gonio/mapping/code16.h>
 #include <gonio/mapping/error.h>
+#include <gonio/mapping/folded_disk.h>
 
 namespace gonio {
 
@@ -29,10 +30,11 @@ Colour::Colour(std::vector<float> theta_i, int side, const std::vector<glm::vec3
       largest_ = std::max(largest_, w[c]);
     }
   }
-  codes_.reserve(3 * values.size());
+  codes_.reserve(3 * values.size() + 1);
   for (const glm::vec3& w : values)
     for (int c = 0; c < 3; ++c)
       codes_.push_back(largest_ > 0 ? encode16(static_cast<double>(w[c]) / static_cast<double>(largest_)) : std::uint16_t{0});
+  codes_.push_back(0);
 }
 
 Colour Colour::from_table(const BrdfTable& table, const DirectionMap& map, const std::vector<float>& theta_i, int side) {
@@ -63,34 +65,35 @@ Colour Colour::from_table(const BrdfTable& table, const DirectionMap& map, const
 }
 
 std::vector<glm::vec3> Colour::values() const {
-  std::vector<glm::vec3> values(codes_.size() / 3);
-  for (std::size_t i = 0; i < codes_.size(); ++i) values[i / 3][static_cast<int>(i % 3)] = largest_ * decode16(codes_[i]);
+  std::vector<glm::vec3> values(cells());
+  for (std::size_t i = 0; i < 3 * values.size(); ++i) values[i / 3][static_cast<int>(i % 3)] = largest_ * decode16(codes_[i]);
   return values;
 }
 
-glm::vec3 Colour::bilinear(std::size_t angle, SquarePoint<float> at) const noexcept {
+glm::vec3 Colour::eval(float theta_i, SquarePoint<float> at) const noexcept {
+  const auto [k, alpha] = bracket(theta_i_, theta_i);
   const float x = std::clamp(at.u * static_cast<float>(side_) - 0.5f, 0.0f, static_cast<float>(side_ - 1));
   const float y = std::clamp((std::abs(at.v - 0.5f)) * static_cast<float>(side_) - 0.5f, 0.0f,
                              static_cast<float>(side_ / 2 - 1));
   const int i = std::min(static_cast<int>(x), side_ - 2), j = std::min(static_cast<int>(y), std::max(side_ / 2 - 2, 0));
-  const int below = std::min(j + 1, side_ / 2 - 1);
   const float a = x - static_cast<float>(i), b = y - static_cast<float>(j);
-  const std::uint16_t* rows = codes_.data() + 3 * angle * static_cast<std::size_t>(side_ * (side_ / 2));
-  const auto at_cell = [rows](int cell) {
-    const std::uint16_t* c = rows + 3 * cell;
-    return glm::vec3(decode16(c[0]), decode16(c[1]), decode16(c[2]));
-  };
-  const int top = j * side_ + i, bottom = below * side_ + i;
-  return largest_ * ((1 - b) * ((1 - a) * at_cell(top) + a * at_cell(top + 1)) +
-                     b * ((1 - a) * at_cell(bottom) + a * at_cell(bottom + 1)));
-}
+  const int below = side_ > 2 ? 3 * side_ : 0, behind = theta_i_.size() > 1 ? 3 * side_ * (side_ / 2) : 0;
+  const std::uint16_t* first = codes_.data() + 3 * ((k * (side_ / 2) + j) * side_ + i);
 
-glm::vec3 Colour::eval(float theta_i, SquarePoint<float> at) const noexcept {
-  const int count = static_cast<int>(theta_i_.size());
-  if (count == 1) return bilinear(0, at);
-  const int k = find_cell(theta_i_.data(), count, theta_i);
-  const float alpha = std::clamp((theta_i - theta_i_[k]) / (theta_i_[k + 1] - theta_i_[k]), 0.0f, 1.0f);
-  return (1 - alpha) * bilinear(static_cast<std::size_t>(k), at) + alpha * bilinear(static_cast<std::size_t>(k + 1), at);
+  float sum[4] = {0, 0, 0, 0};  // vectors of four; the last lane is that of another cell
+  const auto add = [&](const std::uint16_t* cell, float weight) {
+    for (int channel = 0; channel < 4; ++channel) sum[channel] += weight * decode16(cell[channel]);
+  };
+  const auto add_layer = [&](const std::uint16_t* top, float weight) {
+    const std::uint16_t* bottom = top + below;
+    add(top, weight * (1 - b) * (1 - a));
+    add(top + 3, weight * (1 - b) * a);
+    add(bottom, weight * b * (1 - a));
+    add(bottom + 3, weight * b * a);
+  };
+  add_layer(first, largest_ * (1 - alpha));
+  add_layer(first + behind, largest_ * alpha);
+  return {sum[0], sum[1], sum[2]};
 }
 
 }  // namespace gonio

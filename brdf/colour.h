@@ -56,12 +56,10 @@ class Colour {
   }
 
  private:
-  glm::vec3 bilinear(std::size_t angle, SquarePoint<float> at) const noexcept;
-
   int side_ = 0;
   float largest_ = 0;
   std::vector<float> theta_i_;
-  std::vector<std::uint16_t> codes_;  // R, G, B interleaved
+  std::vector<std::uint16_t> codes_;  // R, G, B interleaved; one more, so that four can be read anywhere
 };
 
 }  // namespace gonio

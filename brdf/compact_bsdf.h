@@ -3,22 +3,12 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
-#include <variant>
 
 #include <gonio/brdf/bsdf_sample.h>
 #include <gonio/brdf/colour.h>
-#include <gonio/mapping/packed_stack.h>
+#include <gonio/mapping/any_stack.h>
 
 namespace gonio {
-
-/// How the densities of a stack are held.
-enum class Storage {
-  packed16,  ///< PackedStack: 16 bits a crossing; `blend` alone
-  float32    ///< Stack<float>
-};
-
-inline constexpr Storage storages[] = {Storage::packed16, Storage::float32};
-const char* to_string(Storage storage) noexcept;
 
 /// A material that needs its table no more: the stack's densities and its Colour are the BSDF,
 /// f_r cos theta_o = W pdf. sample(), pdf() and eval() agree to rounding, whatever the distance to the table.
@@ -41,13 +31,13 @@ class CompactBsdf {
   /// f_r(wi, wo) per RGB channel [1/sr], without the cosine: one inversion of the map.
   glm::vec3 eval(const glm::vec3& wi, const glm::vec3& wo) const noexcept;
 
-  Storage storage() const noexcept { return stack_.index() == 0 ? Storage::packed16 : Storage::float32; }
   const Colour& colour() const noexcept { return colour_; }
-  const std::variant<PackedStack, Stack<float>>& stack() const noexcept { return stack_; }
-  std::size_t bytes() const noexcept;  ///< all memory held, this object included
+  const AnyStack& stack() const noexcept { return stack_; }
+  /// All memory held, this object included.
+  std::size_t bytes() const noexcept { return stack_.bytes() + colour_.bytes(); }
 
  private:
-  std::variant<PackedStack, Stack<float>> stack_;
+  AnyStack stack_;
   Colour colour_;
 };
 

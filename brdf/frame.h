@@ -3,6 +3,8 @@
 #include <cmath>
 #include <glm/vec3.hpp>
 
+#include <gonio/mapping/fast_atan2.h>
+
 namespace gonio {
 
 /// The incident direction as the diagrams see it: its polar angle, and the rotation about the normal
@@ -10,7 +12,7 @@ namespace gonio {
 struct IncidentFrame {
   explicit IncidentFrame(const glm::vec3& wi) noexcept {
     const float sin_theta = std::sqrt(wi.x * wi.x + wi.y * wi.y);
-    theta_i = std::atan2(sin_theta, wi.z);
+    theta_i = fast_atan2(sin_theta, wi.z);
     if (sin_theta > 0) cos_phi = wi.x / sin_theta, sin_phi = wi.y / sin_theta;
   }
 

@@ -6,13 +6,16 @@
 namespace gonio {
 
 Sampler::Sampler(std::shared_ptr<const BrdfTable> table, const Progress& progress)
-    : stack_(fit_compact(*table, {}, progress).best().diagrams, Interpolation::blend), table_(std::move(table)) {}
+    : stack_(fit_compact(*table, {}, progress).best().diagrams, Interpolation::blend, Storage::packed16),
+      table_(std::move(table)) {}
 
 Sampler::Sampler(std::shared_ptr<const BrdfTable> table, const StackOptions& options, const Progress& progress)
-    : stack_(build_stack(*table, options, progress), options.interpolation), table_(std::move(table)) {}
+    : stack_(build_stack(*table, options, progress), options.interpolation, Storage::float32),
+      table_(std::move(table)) {}
 
-Sampler::Sampler(std::shared_ptr<const BrdfTable> table, const StackGrid& diagrams, Interpolation interpolation)
-    : stack_(diagrams, interpolation), table_(std::move(table)) {}
+Sampler::Sampler(std::shared_ptr<const BrdfTable> table, const StackGrid& diagrams, Interpolation interpolation,
+                 Storage storage)
+    : stack_(diagrams, interpolation, storage), table_(std::move(table)) {}
 
 std::optional<BsdfSample> Sampler::sample(const glm::vec3& wi, const glm::vec2& u) const noexcept {
   if (!(wi.z > 0)) return std::nullopt;

@@ -7,6 +7,7 @@
 
 #include <gonio/brdf/bsdf_sample.h>
 #include <gonio/brdf/build.h>
+#include <gonio/mapping/any_stack.h>
 
 namespace gonio {
 
@@ -21,15 +22,15 @@ namespace gonio {
 /// constructors allocates or locks.
 class Sampler {
  public:
-  /// With the diagrams that fit_compact() chooses, in 32 bits, blended. Takes seconds.
+  /// With the diagrams that fit_compact() chooses, in 16 bits, blended. Takes seconds.
   explicit Sampler(std::shared_ptr<const BrdfTable> table, const Progress& progress = {});
 
   /// With a stack of sizes set by hand, and its options' interpolation.
   Sampler(std::shared_ptr<const BrdfTable> table, const StackOptions& options, const Progress& progress = {});
 
-  /// With diagrams that exist already (a stack file's, say).
+  /// With diagrams that exist already (a stack file's, say). @throws Error as AnyStack does.
   Sampler(std::shared_ptr<const BrdfTable> table, const StackGrid& diagrams,
-          Interpolation interpolation = Interpolation::displacement);
+          Interpolation interpolation = Interpolation::displacement, Storage storage = Storage::float32);
 
   /// Draws wo for `wi` from two uniform numbers in [0, 1). Empty for wi.z <= 0, and for a draw that
   /// falls on a direction without density (a measure-zero event).
@@ -42,13 +43,13 @@ class Sampler {
   /// f_r(wi, wo) per RGB channel [1/sr], without the cosine.
   glm::vec3 eval(const glm::vec3& wi, const glm::vec3& wo) const noexcept;
 
-  const Stack<float>& stack() const noexcept { return stack_; }
+  const AnyStack& stack() const noexcept { return stack_; }
   const std::shared_ptr<const BrdfTable>& table() const noexcept { return table_; }
   /// All memory held, the shared table apart.
   std::size_t bytes() const noexcept { return sizeof(*this) - sizeof(stack_) + stack_.bytes(); }
 
  private:
-  Stack<float> stack_;
+  AnyStack stack_;
   std::shared_ptr<const BrdfTable> table_;
 };
 

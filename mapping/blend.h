@@ -25,12 +25,7 @@ class Blend {
     const int count = d0_.meridians_;
     const T *c0 = d0_.cumulative_phi(), *c1 = d1_.cumulative_phi();
     const T angle = std::clamp(u, T(0), T(1)) * mix(c0[count - 1], c1[count - 1]);
-    int i = 0;
-    for (int length = count - 1; length > 1;) {  // find_cell() on the blend
-      const int half = length / 2;
-      i = mix(c0[i + half], c1[i + half]) < angle ? i + half : i;
-      length -= half;
-    }
+    const int i = find_cell_of([=, w0 = w0_, w1 = w1_](int k) { return w0 * c0[k] + w1 * c1[k]; }, count, angle);
     const T* phi = d0_.phi();
     const AzimuthCell<T> across{phi[i + 1] - phi[i], meridian_mass(i), meridian_mass(i + 1)};
     const T a = across.invert(angle - mix(c0[i], c1[i]));
@@ -38,12 +33,7 @@ class Blend {
 
     const int last = d0_.parallels_ - 1;
     const T target = std::clamp(v, T(0), T(1)) * rows.cumulative(last);
-    int j = 0;
-    for (int length = last; length > 1;) {
-      const int half = length / 2;
-      j = rows.cumulative(j + half) < target ? j + half : j;
-      length -= half;
-    }
+    const int j = find_cell_of([&](int k) { return rows.cumulative(k); }, last + 1, target);
     const RadialCell<T> cell = radial_cell(rows, j);
     const T mass = cell.mass(1), inside = target - rows.cumulative(j);
     const T s = inside > 0 && mass > 0 ? cell.invert(std::min(inside / mass, T(1))) : T(0);

@@ -34,7 +34,7 @@ struct DiagramGrid {
 ///
 /// Both stages take uniform numbers in [0, 1]: `u` goes over the stored azimuth (half or full), `v`
 /// is r_B^2. The density of the image is the stored density over its integral: pdf() is exact.
-/// No map iterates; each does one binary search over the lines and a fixed number of operations.
+/// No map iterates; each does one search over the lines and a fixed number of operations.
 ///
 /// Maximum errors, against exact arithmetic on the same lines and densities, epsilon being that of T:
 /// - forward maps: the mass below the position given, taken exactly at one of the values of T next to it,
@@ -112,9 +112,6 @@ class Diagram {
   const T* density(int i) const noexcept { return r() + parallels_ + i * parallels_; }
   /// U(i, j) of eq. 19: the mass of meridian i up to parallel j.
   const T* cumulative(int i) const noexcept { return density(meridians_ + i); }
-  /// The ends of meridian_at() and parallel_at(), the cell found; `target` is the mass wanted.
-  Meridian meridian_in(int i, T target) const noexcept;
-  Parallel parallel_in(const Meridian& m, int j, T target) const noexcept;
   T meridian_mass(int i) const noexcept { return cumulative(i)[parallels_ - 1]; }
 
   Azimuth azimuth_;
@@ -122,27 +119,31 @@ class Diagram {
   std::vector<T> values_;  // phi | cumulative_phi | r | density | cumulative, one block
 };
 
-/// The largest i in [0, n - 2] with x[i] < t (0 if there is none): the cell that ends at or after t
+/// The largest i in [0, n - 2] with x(i) < t (0 if there is none), x ascending: the cell that ends at or after t
 /// and, when x is cumulative and t > 0, has mass.
-template <class T>
-inline int find_cell(const T* x, int n, T t) noexcept {
-  int first = 0;
-  for (int length = n - 1; length > 1;) {
+template <class Value, class T>
+inline int find_cell_of(const Value& x, int n, T t) noexcept {
+  // The last steps of the bisection, each of which waits for the one before, as one pass of vectors.
+  constexpr int pass = 32;
+  int first = 0, length = n - 1;
+  while (length > pass) {
     const int half = length / 2;
-    first = x[first + half] < t ? first + half : first;
+    first = x(first + half) < t ? first + half : first;
     length -= half;
   }
-  return first;
+  int before = 0;
+  for (int k = 1; k < length; ++k) before += x(first + k) < t;
+  return first + before;
+}
+template <class T>
+inline int find_cell(const T* x, int n, T t) noexcept {
+  return find_cell_of([x](int i) { return x[i]; }, n, t);
 }
 
 template <class T>
 typename Diagram<T>::Meridian Diagram<T>::meridian_at(T u) const noexcept {
   const T target = std::clamp(u, T(0), T(1)) * mass();
-  return meridian_in(find_cell(cumulative_phi(), meridians_, target), target);
-}
-
-template <class T>
-typename Diagram<T>::Meridian Diagram<T>::meridian_in(int i, T target) const noexcept {
+  const int i = find_cell(cumulative_phi(), meridians_, target);
   const T m0 = meridian_mass(i), m1 = meridian_mass(i + 1);
   const T width = phi()[i + 1] - phi()[i];
   const T a = AzimuthCell<T>{width, m0, m1}.invert(target - cumulative_phi()[i]);
@@ -169,18 +170,7 @@ typename Diagram<T>::Parallel Diagram<T>::parallel_at(const Meridian& m, T v) co
   const T target = std::clamp(v, T(0), T(1)) * m.mass;
   const T *u0 = cumulative(m.i), *u1 = cumulative(m.i + 1);
   const T a = m.a, b = 1 - a;
-  int j = 0;
-  for (int length = parallels_ - 1; length > 1;) {  // find_cell() on the blend of two rows, eq. 18
-    const int half = length / 2;
-    j = b * u0[j + half] + a * u1[j + half] < target ? j + half : j;
-    length -= half;
-  }
-  return parallel_in(m, j, target);
-}
-
-template <class T>
-typename Diagram<T>::Parallel Diagram<T>::parallel_in(const Meridian& m, int j, T target) const noexcept {
-  const T a = m.a, b = 1 - a;
+  const int j = find_cell_of([=](int k) { return b * u0[k] + a * u1[k]; }, parallels_, target);  // eq. 18
   const T *d0 = density(m.i), *d1 = density(m.i + 1);
   const RadialCell<T> cell{r()[j], r()[j + 1] - r()[j], b * d0[j] + a * d1[j],
                            b * d0[j + 1] + a * d1[j + 1]};

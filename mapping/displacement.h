@@ -1,7 +1,5 @@
 #pragma once
 
-#include <utility>
-
 #include <gonio/mapping/diagram.h>
 #include <gonio/mapping/monotone_root.h>
 #include <gonio/mapping/polar_map.h>
@@ -26,8 +24,8 @@ class Displacement {
   /// (u, v) in [0, 1]^2 to the disk.
   PolarSample<T> sample(T u, T v) const noexcept {
     v = std::max(v, smallest_v);
-    const Meridians m = meridians_at(std::clamp(u, T(0), T(1)));
-    const auto [p0, p1] = parallels_at(m, std::min(v, T(1)));
+    const Meridians m{d0_.meridian_at(u), d1_.meridian_at(u)};
+    const Parallel p0 = d0_.parallel_at(m.first, v), p1 = d1_.parallel_at(m.second, v);
     const T r = w0_ * p0.r + w1_ * p1.r;
     return {{r, w0_ * m.first.phi + w1_ * m.second.phi}, density(m, p0, p1, r)};
   }
@@ -53,38 +51,6 @@ class Displacement {
   struct Meridians {
     Meridian first, second;
   };
-
-  /// find_cell() in two arrays at once, given how many cells each has and whether the mass before one is less than its
-  /// target: half as many waits for memory as one search after the other.
-  template <class First, class Second>
-  static std::pair<int, int> find_cells(int length0, const First& before0, int length1, const Second& before1) noexcept {
-    int i = 0, j = 0;
-    while (length0 > 1 || length1 > 1) {  // a search that is at its end stays there
-      const int half0 = length0 / 2, half1 = length1 / 2;
-      i = before0(i + half0) ? i + half0 : i, length0 -= half0;
-      j = before1(j + half1) ? j + half1 : j, length1 -= half1;
-    }
-    return {i, j};
-  }
-  Meridians meridians_at(T u) const noexcept {
-    const T *c0 = d0_.cumulative_phi(), *c1 = d1_.cumulative_phi();
-    const T t0 = u * d0_.mass(), t1 = u * d1_.mass();
-    const auto [i, j] = find_cells(d0_.meridians_ - 1, [&](int k) { return c0[k] < t0; },  //
-                                   d1_.meridians_ - 1, [&](int k) { return c1[k] < t1; });
-    return {d0_.meridian_in(i, t0), d1_.meridian_in(j, t1)};
-  }
-  std::pair<Parallel, Parallel> parallels_at(const Meridians& m, T v) const noexcept {
-    const auto mass = [](const Diagram<T>& d, const Meridian& at) {
-      return [a = at.a, b = 1 - at.a, c0 = d.cumulative(at.i), c1 = d.cumulative(at.i + 1)](int k) {
-        return b * c0[k] + a * c1[k];
-      };
-    };
-    const auto mass0 = mass(d0_, m.first), mass1 = mass(d1_, m.second);
-    const T t0 = v * m.first.mass, t1 = v * m.second.mass;
-    const auto [i, j] = find_cells(d0_.parallels_ - 1, [&](int k) { return mass0(k) < t0; },  //
-                                   d1_.parallels_ - 1, [&](int k) { return mass1(k) < t1; });
-    return {d0_.parallel_in(m.first, i, t0), d1_.parallel_in(m.second, j, t1)};
-  }
 
   // Keeps r positive, where the quotient of radii in the density is 0/0 otherwise.
   static constexpr T smallest_v = std::numeric_limits<T>::epsilon() * std::numeric_limits<T>::epsilon();

@@ -83,7 +83,7 @@ class HalfVectorChart {
     }
     const T q = std::min(scale_ * x / (below / m + scale_ * x), T(1));
     const T d = scale_ * (1 - q) + q / m;
-    return {{std::sqrt(q), across > 0 ? std::atan2(h.y, h.x) : T(0)}, 2 * length * scale_ / (d * d)};
+    return {{std::sqrt(q), across > 0 ? fast_atan2(h.y, h.x) : T(0)}, 2 * length * scale_ / (d * d)};
   }
 
  private:

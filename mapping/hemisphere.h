@@ -1,6 +1,7 @@
 #pragma once
 
 #include <gonio/mapping/concentric.h>
+#include <gonio/mapping/fast_atan2.h>
 
 #include <algorithm>
 #include <cmath>
@@ -30,11 +31,12 @@ Vec3<T> polar_to_direction(Polar<T> p) noexcept {
 
 /// The inverse of polar_to_direction(). @param w a unit vector with w.z >= 0.
 /// r^2 is 1 - cos near the horizon, where that is exact, and sin^2 / (1 + cos) near the pole, where it
-/// would lose all digits. r has a relative error of at most 4 ulp for a `w` that is a unit vector to rounding.
+/// would lose all digits. r has a relative error of at most 4 ulp for a `w` that is a unit vector to rounding,
+/// phi that of fast_atan2().
 template <class T>
 Polar<T> direction_to_polar(const Vec3<T>& w) noexcept {
   const T r2 = w.z < T(0.5) ? 1 - w.z : (w.x * w.x + w.y * w.y) / (1 + w.z);
-  return {std::min(std::sqrt(r2), T(1)), std::atan2(w.y, w.x)};
+  return {std::min(std::sqrt(r2), T(1)), fast_atan2(w.y, w.x)};
 }
 
 /// The parallel theta as a radius on the disk; theta in [0, pi/2]. sqrt(1 - cos) as sqrt(2)

@@ -10,21 +10,6 @@
 #include <gonio/mapping/folded_disk.h>
 
 namespace gonio {
-namespace {
-
-/// The index of the first of `count` ascending values that is at least `target`; the last if none is.
-template <class Value>
-int find_end(const Value& value, int count, float target) noexcept {
-  int first = 0;
-  for (int length = count; length > 1;) {
-    const int half = length / 2;
-    first = value(first + half - 1) < target ? first + half : first;
-    length -= half;
-  }
-  return first;
-}
-
-}  // namespace
 
 /// The blend of the two diagrams about an incident angle, as Blend. Densities and masses of a diagram are in
 /// units of its scale, which is part of its weight.
@@ -39,14 +24,15 @@ class PackedStack::Blended {
   PolarSample<float> sample(float u, float v) const noexcept {
     const int last = stack_.meridians_ - 1;
     const float angle = std::clamp(u, 0.0f, 1.0f) * below(last);
-    const int i = find_end([&](int cell) { return below(cell + 1); }, last, angle);
+    const float *c0 = stack_.cumulative_phi(k0_), *c1 = stack_.cumulative_phi(k1_);
+    const int i = find_cell_of([=, w0 = w0_, w1 = w1_](int k) { return w0 * c0[k] + w1 * c1[k]; }, last + 1, angle);
     const float* phi = stack_.phi() + i;
     const AzimuthCell<float> across{phi[1] - phi[0], meridian_mass(i), meridian_mass(i + 1)};
     const float a = across.invert(angle - below(i));
     const Rows rows(*this, i, a);
 
     const float target = std::clamp(v, 0.0f, 1.0f) * rows.mass();
-    const int b = find_end([&](int k) { return rows.end(k); }, stack_.blocks_, target);
+    const int b = find_cell_of([&](int k) { return rows.start(k); }, stack_.blocks_ + 1, target);
     const Cells cells(rows, b);
     const float inside = target - rows.start(b);
     int j = 0;

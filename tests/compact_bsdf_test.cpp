@@ -30,7 +30,7 @@ const CompactChoice& asymmetric_fit() {
 // Everything that the optimiser emits is a sampler without fault, 16-bit storage included.
 TEST(CompactBsdf, InvariantsHoldOnWhatIsFitted) {
   const CompactBsdf bsdf = asymmetric_fit().best().bsdf();
-  EXPECT_EQ(bsdf.storage(), Storage::packed16);
+  EXPECT_EQ(bsdf.stack().storage(), Storage::packed16);
   proof::InvariantOptions options;
   options.runs = 10;
   options.direction_bound = 1e-3;

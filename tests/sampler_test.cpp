@@ -124,6 +124,7 @@ TEST(Sampler, LambertIsPerfectAndSmall) {
 TEST(Sampler, TheDefaultIsAtLeastAsGood) {
   const Sampler sampler(glossy_table());
   EXPECT_EQ(sampler.stack().interpolation(), Interpolation::blend);
+  EXPECT_EQ(sampler.stack().storage(), Storage::packed16);
   for (const double theta : {2.0, 50.0, 80.0}) {
     const auto q = proof::measure(proof::subject_of(sampler), theta * degree);
     EXPECT_LT(q.relvar, 0.004) << theta;

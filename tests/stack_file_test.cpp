@@ -214,7 +214,7 @@ TEST_F(StackFileTest, LoadedBsdfIsTheSavedOne) {
   const StackFile file = make_file();
   save_stack(path("a.exr"), file);
   const CompactBsdf saved(file.diagrams, file.interpolation, file.storage, file.colour), loaded = load_compact(path("a.exr"));
-  EXPECT_EQ(loaded.storage(), Storage::float32);
+  EXPECT_EQ(loaded.stack().storage(), Storage::float32);
   const glm::vec3 wi(0.6f, 0, 0.8f);
   for (int k = 0; k < 64; ++k) {
     const glm::vec2 u((static_cast<float>(k % 8) + 0.5f) / 8,

@@ -103,13 +103,10 @@ glm::vec3 get_at(ConstArrays3 a, std::size_t k) noexcept { return {a.x[k], a.y[k
 
 }  // namespace
 
-BatchSampler::BatchSampler(const Sampler& sampler) : layout_(sampler.stack()), colour_({}), table_(sampler.table()) {}
+BatchSampler::BatchSampler(const Sampler& sampler) : layout_(sampler.stack().unpacked()), colour_({}), table_(sampler.table()) {}
 
 BatchSampler::BatchSampler(const CompactBsdf& bsdf)
-    : layout_(std::holds_alternative<Stack<float>>(bsdf.stack())
-                  ? std::get<Stack<float>>(bsdf.stack())
-                  : Stack<float>(std::get<PackedStack>(bsdf.stack()).grid(), Interpolation::blend)),
-      colour_(bsdf.colour()) {}
+    : layout_(bsdf.stack().unpacked()), colour_(bsdf.colour()) {}
 
 void BatchSampler::sample_n(std::size_t count, ConstArrays3 wi, const float* u, const float* v, Arrays3 wo, float* pdf,
                             Arrays3 weight) const noexcept {

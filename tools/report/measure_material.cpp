@@ -29,7 +29,8 @@ namespace {
 
 constexpr double compact_variance = 0.01;  // relvar of the method `compact`
 
-nlohmann::json stack_params(const Stack<float>& stack) {
+nlohmann::json stack_params(const AnyStack& held) {
+  const Stack<float> stack = held.unpacked();
   std::size_t crossings = 0;
   int meridians = 0, parallels = 0;
   for (const auto& d : stack.diagrams()) {
@@ -40,24 +41,20 @@ nlohmann::json stack_params(const Stack<float>& stack) {
   return {{"incident", stack.theta_i().size()},
           {"largest_meridians", meridians},
           {"largest_parallels", parallels},
-          {"mean_crossings", crossings / stack.theta_i().size()}};
+          {"mean_crossings", crossings / stack.theta_i().size()},
+          {"storage", to_string(held.storage())}};
 }
 
 nlohmann::json stack_params(const CompactBsdf& bsdf) {
-  const auto* packed = std::get_if<PackedStack>(&bsdf.stack());
-  nlohmann::json params = packed ? stack_params(Stack<float>(packed->grid(), Interpolation::blend))
-                                 : stack_params(std::get<Stack<float>>(bsdf.stack()));
-  params["storage"] = to_string(bsdf.storage());
+  nlohmann::json params = stack_params(bsdf.stack());
   params["colour_cells"] = bsdf.colour().side() * (bsdf.colour().side() / 2);
   params["colour_angles"] = bsdf.colour().theta_i().size();
   return params;
 }
 
-bool has_batch_form(const Stack<float>& stack) { return stack.interpolation() != Interpolation::mixture; }
-bool has_batch_form(const Sampler& sampler) { return has_batch_form(sampler.stack()); }
-bool has_batch_form(const CompactBsdf& bsdf) {
-  const auto* stack = std::get_if<Stack<float>>(&bsdf.stack());
-  return !stack || has_batch_form(*stack);
+template <class S>
+bool has_batch_form(const S& sampler) {
+  return sampler.stack().interpolation() != Interpolation::mixture;
 }
 
 /// A compact BSDF as what it is worth to its table: directions and pdf are its own, f_r is the table's.
@@ -240,7 +237,7 @@ void add_compact(const std::shared_ptr<const BrdfTable>& table, Bench& bench, st
   };
   auto start = Clock::now();
   const CompactChoice fine = fit_compact(*table, {}, [&](double done) { progress(done / 2); });
-  const auto sampler = std::make_shared<const Sampler>(table, fine.best().diagrams, Interpolation::blend);
+  const auto sampler = std::make_shared<const Sampler>(table, fine.best().diagrams, Interpolation::blend, Storage::packed16);
   nlohmann::json params = stack_params(sampler->stack());
   params["default"] = true;
   bench.add<Sampler>("blend", to_string(sampler->stack().chart()), params, seconds_since(start), sampler);
