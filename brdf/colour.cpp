@@ -38,7 +38,7 @@ Colour::Colour(std::vector<float> theta_i, int side, const std::vector<glm::vec3
 }
 
 Colour Colour::from_table(const BrdfTable& table, const DirectionMap& map, const std::vector<float>& theta_i, int side) {
-  constexpr int samples = 8;
+  const int samples = std::max(2, 128 / side);
   const std::size_t columns = static_cast<std::size_t>(side), rows = columns / 2;
   std::vector<glm::vec3> values(theta_i.size() * rows * columns, glm::vec3(0));
   parallel_for(theta_i.size(), [&](std::size_t k) {
@@ -47,8 +47,8 @@ Colour Colour::from_table(const BrdfTable& table, const DirectionMap& map, const
       for (std::size_t column = 0; column < columns; ++column) {
         glm::vec3 sum(0);
         for (int s = 0; s < samples * samples; ++s) {
-          const float x = (static_cast<float>(s % samples) + 0.5f) / samples;
-          const float y = (static_cast<float>(s / samples) + 0.5f) / samples;
+          const float x = (static_cast<float>(s % samples) + 0.5f) / static_cast<float>(samples);
+          const float y = (static_cast<float>(s / samples) + 0.5f) / static_cast<float>(samples);
           const float u = (static_cast<float>(column) + x) / static_cast<float>(side);
           const float v = 0.5f + (static_cast<float>(row) + y) / static_cast<float>(side);
           const auto drawn = map(theta_i[k], u, v);

@@ -39,7 +39,8 @@ class Colour {
   ///   values that are negative or not finite.
   Colour(std::vector<float> theta_i, int side, const std::vector<glm::vec3>& values);
 
-  /// The mean weight of every cell, by 8 x 8 stratified samples: the albedo of the table is kept.
+  /// The mean weight of every cell, by stratified samples, 128 x 64 over all cells but at least 2 x 2 in each: the
+  /// albedo of the table is kept.
   static Colour from_table(const BrdfTable& table, const DirectionMap& map, const std::vector<float>& theta_i, int side);
 
   /// W at a point of the square: bilinear in (u, v), linear between the angles, constant beyond them.

@@ -8,8 +8,6 @@
 namespace gonio::detail {
 namespace {
 
-constexpr int finest_side = 16;
-
 /// Every 2 x 2 cells as their mean: what from_table() gives for half the side.
 Colour coarser(const Colour& colour) {
   const std::vector<glm::vec3> values = colour.values();
@@ -86,7 +84,7 @@ Colour without(const Colour& colour, const std::vector<std::size_t>& order, std:
 }  // namespace
 
 ColourFit fit_colour(const BrdfTable& table, const DirectionMap& map, const std::vector<float>& stack_angles,
-                     const CompactDraws& draws, std::size_t bytes, double enough) {
+                     const CompactDraws& draws, int finest_side, std::size_t bytes, double enough) {
   std::vector<ColourFit> candidates;
   const auto add = [&](const Colour& cells) { candidates.push_back({cells, draws.quality(cells)}); };
   const Colour finest = Colour::from_table(table, map, colour_angles(stack_angles), finest_side);

@@ -57,7 +57,8 @@ class Fitter {
     if (cut || fit.quality.worst_relvar <= options_.max_variance.value_or(fit.quality.worst_relvar)) {
       // Not `bytes`: a colour made to fit under another stack's would be a worse one.
       const std::size_t left = options_.budget > stack.bytes() + 200 ? options_.budget - stack.bytes() - 200 : 0;
-      detail::ColourFit fitted = detail::fit_colour(table_, map, stack.theta_i(), draws, left, colour_error);
+      const int finest_side = colour_error > 0 ? 16 : 32;
+      detail::ColourFit fitted = detail::fit_colour(table_, map, stack.theta_i(), draws, finest_side, left, colour_error);
       fit.colour = std::move(fitted.colour), fit.quality = fitted.quality;
       fit.bytes = fit.bsdf().bytes();
     }

@@ -3,6 +3,7 @@
 #include <gonio/fitting/fit_json.h>
 #include <gonio/mapping/atomic_file.h>
 #include <gonio/mapping/error.h>
+#include <gonio/tools/check_writable.h>
 #include <gonio/tools/convert_stack.h>
 #include <gonio/tools/front.h>
 #include <gonio/tools/input.h>
@@ -50,8 +51,12 @@ void by_hand(const std::filesystem::path& in, const std::filesystem::path& out, 
               file.diagrams.theta_i.size());
 }
 
+bool missed(const CompactFit& fit, const CompactOptions& options) {
+  return options.max_variance && fit.quality.worst_relvar > *options.max_variance;
+}
+
 /// What the chosen stack is, and what it was preferred to.
-std::string describe(const CompactChoice& choice, const StackRequest& request) {
+std::string describe(const CompactChoice& choice, const CompactOptions& options) {
   const CompactFit& best = choice.best();
   std::string text = std::string("chart ") + to_string(best.diagrams.chart) + ", " + std::to_string(best.diagrams.theta_i.size()) +
                      " incident angles, " + std::to_string(best.bytes) + " bytes: relvar at most " +
@@ -63,21 +68,21 @@ std::string describe(const CompactChoice& choice, const StackRequest& request) {
       text += std::string("  not ") + to_string(other.diagrams.chart) + ", " + std::to_string(other.bytes) + " bytes: relvar " +
               number(other.quality.worst_relvar) + ", evaluation error " + number(100 * other.quality.eval_error) + " %\n";
   }
-  if (request.max_variance && best.quality.worst_relvar > *request.max_variance)
-    text += "  " + number(*request.max_variance) + " was not reached within the budget\n";
+  if (missed(best, options)) text += "  a relvar of " + number(*options.max_variance) + " was not reached within the budget\n";
   return text;
 }
 
-/// The first fit with the variance asked for, if there is one, and the points of all.
-const StageFit* smallest_lobes(const std::shared_ptr<const BrdfTable>& table, const TableFits& fits, double max_variance,
-                               std::vector<FrontPoint>& points) {
-  const StageFit* found = nullptr;
+/// The first fit that samples the table with that variance in that many bytes, and its point among those of all.
+struct LobeChoice {
+  const StageFit* fit = nullptr;
+  std::size_t point = 0;
+};
+LobeChoice smallest_lobes(const std::shared_ptr<const BrdfTable>& table, const TableFits& fits, double max_variance,
+                          std::size_t bytes, std::vector<FrontPoint>& points) {
+  LobeChoice found;
   for (const StageFit& stage : fits.stages) {
     points.push_back(front_point(table, stage));
-    if (!found && points.back().relvar <= max_variance) {
-      found = &stage;
-      points.back().chosen = true;
-    }
+    if (!found.fit && points.back().relvar <= max_variance && points.back().bytes <= bytes) found = {&stage, points.size() - 1};
   }
   return found;
 }
@@ -91,9 +96,14 @@ void sized(const std::filesystem::path& in, const std::filesystem::path& out, co
   if (request.max_variance) options.max_variance = request.max_variance;
   options.candidates = request.charts;
 
+  std::filesystem::path file = out;
+  if (any_kind) file += ".json";  // or .exr, beside it
+  check_writable(file);
+  if (!request.front.empty()) check_writable(request.front);
+
   std::vector<FrontPoint> points;
   TableFits fits;
-  const StageFit* lobes = nullptr;
+  LobeChoice lobes;
   std::optional<CompactChoice> choice;
   {
     ProgressLine progress("fitting " + in.string());
@@ -102,41 +112,37 @@ void sized(const std::filesystem::path& in, const std::filesystem::path& out, co
         fits = fit_table(*table, parse_model(default_fit_form));
       } catch (const Error&) {  // a black table
       }
-      lobes = smallest_lobes(table, fits, any_kind ? *options.max_variance : 0, points);
+      lobes = smallest_lobes(table, fits, any_kind ? *options.max_variance : 0, options.budget, points);
     }
     const double before = any_kind || !request.front.empty() ? 0.4 : 0;
     progress.update(before);
     choice = fit_compact(*table, options, [&](double share) { progress.update(before + (1 - before) * share); });
   }
   const CompactFit& best = choice->best();
-  if (lobes && std::find_if(points.begin(), points.end(), [](const FrontPoint& p) { return p.chosen; })->bytes >= best.bytes) {
-    for (FrontPoint& p : points) p.chosen = false;
-    lobes = nullptr;
-  }
-  if (lobes) {
-    std::filesystem::path file = out;
-    file += ".json";
-    write_stream_atomically(file, [&](std::ostream& stream) { stream << to_json(lobes->fit, lobes->errors); });
-    const FrontPoint& p = *std::find_if(points.begin(), points.end(), [](const FrontPoint& q) { return q.chosen; });
-    std::printf("%s: %s, %zu bytes adapted to the table: relvar at most %s up to 80 degrees; a stack of that variance takes %zu\n",
-                file.string().c_str(), p.id.c_str(), p.bytes, number(p.relvar).c_str(), best.bytes);
+  if (lobes.fit && points[lobes.point].bytes >= best.bytes && !missed(best, options)) lobes.fit = nullptr;
+  if (lobes.fit) {
+    FrontPoint& p = points[lobes.point];
+    p.chosen = true;
+    write_stream_atomically(file, [&](std::ostream& stream) { stream << to_json(lobes.fit->fit, lobes.fit->errors); });
+    std::printf("%s: %s, %zu bytes adapted to the table: relvar at most %s up to 80 degrees; a stack takes %zu bytes for %s\n",
+                file.string().c_str(), p.id.c_str(), p.bytes, number(p.relvar).c_str(), best.bytes,
+                number(best.quality.worst_relvar).c_str());
   } else {
-    std::filesystem::path file = out;
-    if (any_kind) file += ".exr";
+    if (any_kind) file.replace_extension(".exr");
     StackFile stack = named(*table, in);
     stack.diagrams = best.diagrams;
     stack.colour = best.colour;
     stack.interpolation = Interpolation::blend;
     stack.storage = Storage::packed16;
     save_stack(file, stack);
-    std::printf("%s", describe(*choice, request).c_str());
+    std::printf("%s", describe(*choice, options).c_str());
   }
   if (!request.front.empty()) {
     for (std::size_t k = 0; k < choice->tried.size(); ++k) {
       points.push_back(front_point(choice->tried[k]));
-      points.back().chosen = !lobes && k == choice->chosen;
+      points.back().chosen = !lobes.fit && k == choice->chosen;
     }
-    write_stream_atomically(request.front, [&](std::ostream& stream) { stream << front_json(points).dump(1) << '\n'; });
+    write_stream_atomically(request.front, [&](std::ostream& stream) { stream << front_json(points).dump(1, ' ', false, nlohmann::json::error_handler_t::replace) << '\n'; });
   }
 }
 

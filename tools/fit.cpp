@@ -248,8 +248,8 @@ void add_fit(CLI::App& app) {
       ->capture_default_str();
   add_cell_policies(*verb, options->policies);
   verb->footer(
-      "The JSON is an input of convert, report and synth, and holds snippets for pbrt-v4 and\n"
-      "Mitsuba 3 where the model exists there.\n\n"
+      "The JSON is an input of info, validate, convert, report, synth, render and compare, and\n"
+      "holds snippets for pbrt-v4 and Mitsuba 3 where the model exists there.\n\n"
       "Examples:\n"
       "  gonio fit chrome.binary -o chrome.json\n"
       "  gonio fit satin.bsdf --model ggx+lambert --channels separate -o fit.json\n"

@@ -9,7 +9,7 @@
 
 #include <gonio/mapping/error.h>
 #include <gonio/tools/progress.h>
-#include <gonio/tools/render/check_writable.h>
+#include <gonio/tools/check_writable.h>
 #include <gonio/tools/render/compare_runs.h>
 #include <gonio/tools/render/load_scene.h>
 #include <gonio/tools/render/write_compare.h>

@@ -11,7 +11,7 @@
 #include <gonio/mapping/error.h>
 #include <gonio/tools/options.h>
 #include <gonio/tools/progress.h>
-#include <gonio/tools/render/check_writable.h>
+#include <gonio/tools/check_writable.h>
 #include <gonio/tools/render/film.h>
 #include <gonio/tools/render/load_scene.h>
 #include <gonio/tools/render/tone_map.h>

@@ -1,4 +1,4 @@
-#include <gonio/tools/render/check_writable.h>
+#include <gonio/tools/check_writable.h>
 
 #include <fstream>
 #include <random>
