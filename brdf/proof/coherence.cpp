@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 
 #include <gonio/brdf/proof/random.h>
 
@@ -79,8 +80,8 @@ Coherence measure_coherence(const Subject& subject, double theta_i, int side) {
       const bool apart = torn(map, at(i, j), at(i + 1, j), a->wo, b->wo), aside = torn(map, at(i, j), at(i, j + 1), a->wo, c->wo);
       result.tears += apart + aside;
       if (apart || aside) continue;
-      // Orientation by small corners of the cell: a larger one may be bent, a small one cross a kink. What
-      // is turned inside out is so at every size.
+      // Orientation by small corners of the cell: a larger one may be bent. What is turned inside out is so at every
+      // size and to both sides; a corner that lies on a kink of the map may look so at every size, but to one side alone.
       const auto orientation = [&](double share) {
         const auto right = map(at(i, j) + Point(share * size.x, 0)), up = map(at(i, j) + Point(0, share * size.y));
         if (!(right && up)) return 0;
@@ -90,7 +91,9 @@ Coherence measure_coherence(const Subject& subject, double theta_i, int side) {
         return area > 0 ? 1 : -1;
       };
       const int sign = orientation(1.0 / 64);
-      if (sign != 0 && sign == orientation(1.0 / 512) && sign == orientation(1.0 / 2048)) ++(sign > 0 ? positive : negative);
+      constexpr double others[] = {1.0 / 512, 1.0 / 2048, -1.0 / 512, -1.0 / 2048};
+      if (sign != 0 && std::all_of(std::begin(others), std::end(others), [&](double share) { return orientation(share) == sign; }))
+        ++(sign > 0 ? positive : negative);
     }
   }
   result.folds = std::min(positive, negative);
