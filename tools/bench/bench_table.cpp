@@ -8,6 +8,7 @@
 
 #include <gonio/brdf/baseline.h>
 #include <gonio/brdf/batch/batch_sampler.h>
+#include <gonio/brdf/fit_compact.h>
 #include <gonio/brdf/proof/gallery.h>
 #include <gonio/brdf/proof/random.h>
 #include <gonio/brdf/sampler.h>
@@ -141,7 +142,14 @@ void rgl_backed(benchmark::State& state, bool batch) {
   static const Sampler sampler(table);
   batch ? in_batches(state, Call::sample, sampler) : one_by_one(state, Call::sample, sampler);
 }
-/// The same stack with its own colours.
+/// What `gonio convert` makes of it.
+void rgl_compact(benchmark::State& state, bool batch) {
+  const auto table = rgl(state);
+  if (!table) return;
+  static const CompactBsdf sampler = fit_compact(*table).best().bsdf();
+  batch ? in_batches(state, Call::sample, sampler) : one_by_one(state, Call::sample, sampler);
+}
+/// A displacement stack with colours of its own.
 void rgl_contained(benchmark::State& state, bool batch) {
   const auto table = rgl(state);
   if (!table) return;
@@ -169,6 +177,7 @@ const int registered = [] {
   for (const bool batch : {false, true}) {
     const std::string end = batch ? "_batch" : "";
     benchmark::RegisterBenchmark(("rgl_stack_sample" + end).c_str(), rgl_backed, batch);
+    benchmark::RegisterBenchmark(("rgl_compact_sample" + end).c_str(), rgl_compact, batch);
     benchmark::RegisterBenchmark(("rgl_contained_sample" + end).c_str(), rgl_contained, batch);
   }
   return 0;
