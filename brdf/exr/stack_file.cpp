@@ -29,7 +29,7 @@
 namespace gonio {
 namespace {
 
-constexpr std::size_t most_values = std::size_t{1} << 26;  // of a part
+constexpr std::size_t most_values = std::size_t{1} << 23;  // of a part
 constexpr int largest_side = 1 << 14;  // lines or cells a part may have: no real stack comes near
 
 [[noreturn]] void fail(const std::string& file, const std::string& field, const std::string& found,
