@@ -7,6 +7,7 @@
 #include <gonio/tools/convert_stack.h>
 #include <gonio/tools/front.h>
 #include <gonio/tools/input.h>
+#include <gonio/tools/number.h>
 #include <gonio/tools/progress.h>
 
 #include <CLI/CLI.hpp>
@@ -18,12 +19,6 @@ namespace gonio {
 namespace {
 
 constexpr int colour_side = 16;
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.2g", value);
-  return text;
-}
 
 StackFile named(const BrdfTable& table, const std::filesystem::path& in) {
   StackFile file;
@@ -60,15 +55,15 @@ std::string describe(const CompactChoice& choice, const CompactOptions& options)
   const CompactFit& best = choice.best();
   std::string text = std::string("chart ") + to_string(best.diagrams.chart) + ", " + std::to_string(best.diagrams.theta_i.size()) +
                      " incident angles, " + std::to_string(best.bytes) + " bytes: relvar at most " +
-                     number(best.quality.worst_relvar) + " up to 80 degrees, evaluation error " +
-                     number(100 * best.quality.eval_error) + " %, albedo within " + number(100 * best.quality.albedo_error) + " %\n";
+                     number(best.quality.worst_relvar, 2) + " up to 80 degrees, evaluation error " +
+                     number(100 * best.quality.eval_error, 2) + " %, albedo within " + number(100 * best.quality.albedo_error, 2) + " %\n";
   for (std::size_t k = 0; k < choice.tried.size(); ++k) {
     const CompactFit& other = choice.tried[k];
     if (k != choice.chosen)
       text += std::string("  not ") + to_string(other.diagrams.chart) + ", " + std::to_string(other.bytes) + " bytes: relvar " +
-              number(other.quality.worst_relvar) + ", evaluation error " + number(100 * other.quality.eval_error) + " %\n";
+              number(other.quality.worst_relvar, 2) + ", evaluation error " + number(100 * other.quality.eval_error, 2) + " %\n";
   }
-  if (missed(best, options)) text += "  a relvar of " + number(*options.max_variance) + " was not reached within the budget\n";
+  if (missed(best, options)) text += "  a relvar of " + number(*options.max_variance, 2) + " was not reached within the budget\n";
   return text;
 }
 
@@ -125,8 +120,8 @@ void sized(const std::filesystem::path& in, const std::filesystem::path& out, co
     p.chosen = true;
     write_stream_atomically(file, [&](std::ostream& stream) { stream << to_json(lobes.fit->fit, lobes.fit->errors); });
     std::printf("%s: %s, %zu bytes adapted to the table: relvar at most %s up to 80 degrees; a stack takes %zu bytes for %s\n",
-                file.string().c_str(), p.id.c_str(), p.bytes, number(p.relvar).c_str(), best.bytes,
-                number(best.quality.worst_relvar).c_str());
+                file.string().c_str(), p.id.c_str(), p.bytes, number(p.relvar, 2).c_str(), best.bytes,
+                number(best.quality.worst_relvar, 2).c_str());
   } else {
     if (any_kind) file.replace_extension(".exr");
     StackFile stack = named(*table, in);

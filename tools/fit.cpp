@@ -4,6 +4,7 @@
 #include <gonio/mapping/error.h>
 #include <gonio/tools/fit.h>
 #include <gonio/tools/input.h>
+#include <gonio/tools/number.h>
 #include <gonio/tools/options.h>
 #include <gonio/tools/progress.h>
 #include <gonio/tools/table_fits.h>
@@ -12,7 +13,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <iomanip>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -29,12 +29,6 @@ struct Options {
   FitOptions fit;
   CellPolicies policies;
 };
-
-std::string number(double x, int digits = 3) {
-  std::ostringstream text;
-  text << std::setprecision(digits) << x;
-  return text.str();
-}
 
 const char* to_text(Compression compression) noexcept {
   switch (compression) {

@@ -9,13 +9,13 @@
 #include <gonio/tools/input.h>
 #include <gonio/tools/ndf/picture.h>
 #include <gonio/tools/ndf/profile.h>
+#include <gonio/tools/number.h>
 #include <gonio/tools/options.h>
 #include <gonio/tools/progress.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <ctime>
 #include <filesystem>
 #include <iostream>
@@ -44,12 +44,6 @@ class Clock {
  private:
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
-
-std::string number(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", x);
-  return text;
-}
 
 RadialNdf ggx(double alpha) {
   RadialNdf d(512, [=](double theta) {
@@ -155,7 +149,7 @@ void write_markdown(std::ostream& out, const nlohmann::json& j, const std::strin
       << (j["kind"] == "image" ? ", read from an image" : ", extracted from the retro-reflection of a table (" + j["kind"].get<std::string>() + ")")
       << ".\n\n![D](ndf.svg)\n\n![G1](g1.svg)\n\n";
   if (j["kind"] != "image") out << "![profiles](profile.svg)\n\n";
-  const auto row = [&](const std::string& what, const nlohmann::json& value) { out << "| " << what << " | " << number(value.get<double>()) << " |\n"; };
+  const auto row = [&](const std::string& what, const nlohmann::json& value) { out << "| " << what << " | " << number(value.get<double>(), 4) << " |\n"; };
   out << "| | |\n|---|---|\n";
   row("projected area (integral of D cos) before normalisation", j["projected_area_before"]);
   row("projected area after", j["projected_area_after"]);
@@ -229,8 +223,8 @@ void ndf(const Options& options) {
     write_ndf_profiles(options.out / "profile.svg", "Normal distribution and shadowing of " + source.name, source.profiles);
   write_stream_atomically(options.out / "ndf.json", [&](std::ostream& out) { out << json.dump(1) << '\n'; });
   write_stream_atomically(options.out / "ndf.md", [&](std::ostream& out) { write_markdown(out, json, source.name); });
-  std::cout << "projected area " << number(json["projected_area_before"]) << ", normalised " << number(json["projected_area_after"])
-            << "; G1 of all directions in " << number(json["seconds"]["g1"]) << " s\n"
+  std::cout << "projected area " << number(json["projected_area_before"], 4) << ", normalised " << number(json["projected_area_after"], 4)
+            << "; G1 of all directions in " << number(json["seconds"]["g1"], 4) << " s\n"
             << "written: " << (options.out / "ndf.md").string() << ", ndf.json, ndf.exr, g1.exr and pictures\n";
 }
 

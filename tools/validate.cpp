@@ -5,6 +5,7 @@
 #include <gonio/fitting/model.h>
 #include <gonio/mapping/error.h>
 #include <gonio/tools/input.h>
+#include <gonio/tools/number.h>
 #include <gonio/tools/progress.h>
 #include <gonio/tools/validate.h>
 
@@ -31,12 +32,6 @@ void check_name(const std::filesystem::path& path, const std::string& expected,
     problems.push_back({"extension", found, expected + " for what the file holds", true});
 }
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.4g", value);
-  return text;
-}
-
 /// What an error says of `path`, without naming it: the line that it becomes does.
 std::string text_of(const Error& error, const std::filesystem::path& path) {
   const std::string text = error.what(), prefix = path.string() + ": ";
@@ -59,14 +54,14 @@ std::vector<Problem> check_stack(const std::filesystem::path& path) {
     const double integral = grid.density[peak] / Diagram<double>(grid).grid().density[peak];
     if (std::abs(integral - 1) > 1e-3) {
       problems.push_back({"diagram " + std::to_string(k),
-                          "densities with integral " + number(integral),
+                          "densities with integral " + number(integral, 4),
                           "1 over the hemisphere (they are scaled on loading)", false});
     }
   }
   const double last = file.diagrams.theta_i.back() * 180 / pi<double>;
   if (last < 80) {
     problems.push_back(
-        {"theta_i", "a last diagram at " + number(last) + " degrees", "80 or more", false});
+        {"theta_i", "a last diagram at " + number(last, 4) + " degrees", "80 or more", false});
   }
   if (file.colour.empty()) {
     problems.push_back(
@@ -90,7 +85,7 @@ std::vector<Problem> check_model(const std::filesystem::path& path) {
       }
     }
     if (largest > 1) {
-      problems.push_back({"albedo", number(largest) + " at " + number(where) + " degrees",
+      problems.push_back({"albedo", number(largest, 4) + " at " + number(where, 4) + " degrees",
                           "at most 1, or it reflects more than it receives", false});
     }
   } catch (const Error& error) {

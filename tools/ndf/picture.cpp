@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <iterator>
 #include <limits>
@@ -14,17 +13,12 @@
 #include <gonio/mapping/atomic_file.h>
 #include <gonio/mapping/error.h>
 #include <gonio/tools/base64.h>
+#include <gonio/tools/number.h>
 
 namespace gonio {
 namespace {
 
 constexpr double degree = pi<double> / 180;
-
-std::string number(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", x);
-  return text;
-}
 
 using Rgb = std::array<double, 3>;
 

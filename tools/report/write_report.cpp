@@ -1,3 +1,4 @@
+#include <gonio/tools/number.h>
 #include <gonio/tools/report/write_report.h>
 
 #include <gonio/tools/report/compare_lobes.h>
@@ -11,7 +12,6 @@
 #include <cmath>
 #include <iomanip>
 #include <ostream>
-#include <sstream>
 
 #include <gonio/fitting/fit.h>
 #include <gonio/mapping/atomic_file.h>
@@ -41,13 +41,6 @@ nlohmann::json to_json(const proof::Quality& q) {
           {"albedo_table", rgb(q.albedo_table)},
           {"chi2_p", q.chi2.p}};
 }
-
-std::string number(double x, int digits = 3) {
-  std::ostringstream text;
-  text << std::setprecision(digits) << x;
-  return text.str();
-}
-
 
 std::string kib(std::size_t bytes) { return number(static_cast<double>(bytes) / 1024, 3) + " KiB"; }
 

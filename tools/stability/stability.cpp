@@ -1,3 +1,4 @@
+#include <gonio/tools/number.h>
 #include <gonio/tools/stability/stability.h>
 
 #include <gonio/brdf/proof/chi_square.h>
@@ -17,19 +18,12 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
 
 namespace gonio {
 namespace {
-
-std::string number(double x) {
-  std::ostringstream text;
-  text << std::setprecision(2) << x;
-  return text.str();
-}
 
 std::vector<StabilityRow> measure(ProgressLine& line) {
   const std::vector<StabilityInput> inputs = stability_inputs();
@@ -84,7 +78,7 @@ void write_markdown(std::ostream& out, const std::vector<StabilityRow>& rows) {
          "A variant fails on an input if its largest error exceeds the bound in the table below, if an estimate with its draws is off by more\n"
          "than 5 standard errors (and 0.03 %, what the quadrature may err), or if the draws can be told from the pdf claimed: a draw\n"
          "outside the support, or chi-square p below "
-      << number(proof::sidak(0.01, static_cast<int>(rows.size())))
+      << number(proof::sidak(0.01, static_cast<int>(rows.size())), 2)
       << " (0.01 for all rows together, Sidak). An error of 8.4e+06 ulp is an answer\nwithout a correct digit.\n\n![chart](stability.svg)\n\n";
   write_stability_summary(out, to_json(rows));
   out << "\n## All rows\n\n| input | variant | error [ulp] | bound | bias | standard error | chi2 p | fails by |\n|---|---|---|---|---|---|---|---|\n";
@@ -93,15 +87,15 @@ void write_markdown(std::ostream& out, const std::vector<StabilityRow>& rows) {
     if (r.error_fails) failed += "error ";
     if (r.bias_fails) failed += "bias ";
     if (r.chi2_fails) failed += "chi2 ";
-    out << "| " << r.input << " | " << r.variant << " | " << number(r.max_error) << " | " << number(r.bound) << " | " << number(100 * r.bias) << " % | "
-        << number(100 * r.standard_error) << " % | " << number(r.chi2_p) << " | " << failed << "|\n";
+    out << "| " << r.input << " | " << r.variant << " | " << number(r.max_error, 2) << " | " << number(r.bound, 2) << " | " << number(100 * r.bias, 2) << " % | "
+        << number(100 * r.standard_error, 2) << " % | " << number(r.chi2_p, 2) << " | " << failed << "|\n";
   }
   out << "\n## Inputs\n\n";
   for (const StabilityInput& input : stability_inputs()) out << "- " << input.name << ": " << input.reason << "\n";
   out << "\n## The error of reading theta as r\n\n| equal intervals | absolute | relative |\n|---|---|---|\n";
   for (const int intervals : {1, 10}) {
     const WorstReading w = worst_reading_error(intervals);
-    out << "| " << intervals << " | " << number(100 * w.absolute) << " % | " << std::setprecision(3) << 100 * w.relative << " % |\n";
+    out << "| " << intervals << " | " << number(100 * w.absolute, 2) << " % | " << std::setprecision(3) << 100 * w.relative << " % |\n";
   }
   out << "\n![Fig. 3](figure3.svg)\n\n![Fig. 6](figure6.svg)\n";
 }

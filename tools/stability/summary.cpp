@@ -1,27 +1,16 @@
 #include <gonio/tools/stability/summary.h>
+#include <gonio/tools/number.h>
 
 #include <gonio/mapping/error.h>
 
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <iomanip>
 #include <ostream>
-#include <sstream>
 #include <string>
 #include <vector>
 
 namespace gonio {
-namespace {
-
-std::string number(double x) {
-  std::ostringstream text;
-  text << std::setprecision(2) << x;
-  return text.str();
-}
-
-}  // namespace
-
 nlohmann::json read_stability(const std::filesystem::path& path) {
   std::ifstream in(path);
   if (!in) throw Error(path.string() + ": cannot be opened, expected the stability.json of gonio stability");
@@ -60,8 +49,8 @@ void write_stability_summary(std::ostream& out, const nlohmann::json& stability)
       if (std::abs(row["bias"].get<double>()) > std::abs(bias)) bias = row["bias"];
       p = std::min(p, row["chi2_p"].get<double>());
     }
-    out << "| " << name << " | " << failures << " of " << count << " | " << number(error) << " | " << (*any)["error_of"].get<std::string>() << " | "
-        << number(100 * bias) << " % | " << number(p) << " | " << (*any)["why"].get<std::string>() << " |\n";
+    out << "| " << name << " | " << failures << " of " << count << " | " << number(error, 2) << " | " << (*any)["error_of"].get<std::string>() << " | "
+        << number(100 * bias, 2) << " % | " << number(p, 2) << " | " << (*any)["why"].get<std::string>() << " |\n";
   }
 }
 
