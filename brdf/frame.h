@@ -3,7 +3,7 @@
 #include <cmath>
 #include <glm/vec3.hpp>
 
-#include <gonio/mapping/fast_atan2.h>
+#include <gonio/mapping/fast_math.h>
 
 namespace gonio {
 

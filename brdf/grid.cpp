@@ -1,5 +1,5 @@
 #include <gonio/brdf/bytes.h>
-#include <gonio/mapping/fast_atan2.h>
+#include <gonio/mapping/fast_math.h>
 #include <gonio/brdf/grid.h>
 #include <gonio/brdf/interpolate.h>
 #include <gonio/brdf/repair.h>

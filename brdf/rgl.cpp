@@ -1,4 +1,4 @@
-#include <gonio/mapping/fast_atan2.h>
+#include <gonio/mapping/fast_math.h>
 #include <gonio/brdf/repair.h>
 #include <gonio/brdf/rgl.h>
 #include <gonio/mapping/error.h>

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include <gonio/mapping/fast_math.h>
 
 namespace gonio {
 
@@ -30,19 +33,12 @@ struct DiskPoint {
 template <class T>
 DiskPoint<T> square_to_disk(T u, T v) noexcept {
   const T x = 2 * u - 1, y = 2 * v - 1;
-  // The four triangles of the square; each spans a quarter turn about its axis.
-  T turn, radius;
-  if (std::abs(x) > std::abs(y)) {
-    radius = x;
-    turn = (x > 0 ? T(0) : T(0.5)) + y / x / 8;
-  } else if (y != 0) {
-    radius = y;
-    turn = (y > 0 ? T(0.25) : T(0.75)) - x / y / 8;
-  } else {
-    return {0, 0};
-  }
-  if (turn < 0) turn += 1;
-  return {turn < 1 ? turn : T(0), radius * radius};  // -tiny + 1 rounds to 1, which is 0 again
+  const T ax = std::abs(x), ay = std::abs(y), radius = std::max(ax, ay);
+  const T part = std::min(ax, ay) / std::max(radius, std::numeric_limits<T>::min()) / 8;
+  T turn = select(ax > ay, part, T(0.25) - part);  // in the first quadrant
+  turn = select(x < 0, T(0.5) - turn, turn);
+  turn = select(y < 0, 1 - turn, turn);
+  return {select(turn < 1, turn, T(0)), radius * radius};  // 1 - tiny rounds to 1, which is 0 again
 }
 
 /// The inverse of square_to_disk(). @param p turn in [0, 1), r2 in [0, 1].

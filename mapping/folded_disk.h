@@ -23,7 +23,7 @@ struct Folded {
 template <class T>
 Folded<T> fold(T turn, bool half) noexcept {
   if (!half) return {turn, false};
-  return turn <= T(0.5) ? Folded<T>{2 * turn, false} : Folded<T>{2 * (1 - turn), true};
+  return {2 * std::min(turn, 1 - turn), turn > T(0.5)};
 }
 
 template <class T>
@@ -61,7 +61,7 @@ template <class T>
 DirectionSample<T> from_disk(Chart chart, T theta_i, PolarSample<T> s, bool mirrored) noexcept {
   // The horizon itself has no cosine and is no direction of reflection.
   s.at.r = std::min(s.at.r, 1 - std::numeric_limits<T>::epsilon() / 2);
-  if (mirrored) s.at.phi = -s.at.phi;
+  s.at.phi = select(mirrored, -s.at.phi, s.at.phi);
   if (chart == Chart::outgoing) return {polar_to_direction(s.at), s.pdf};
   const auto d = HalfVectorChart<T>(theta_i).direction(s.at);
   return {d.wo, s.pdf / d.jacobian};

@@ -34,7 +34,8 @@ class HalfVectorChart {
   /// @param theta_i [rad], clamped to [0, largest_theta_i].
   explicit HalfVectorChart(T theta_i) noexcept {
     theta_i = std::clamp(theta_i, T(0), largest_theta_i);
-    sin_ = std::sin(theta_i), cos_ = std::cos(theta_i);
+    const SinCos<T> i = sin_cos(theta_i);
+    sin_ = i.sin, cos_ = i.cos;
     scale_ = std::sqrt(T(2)) * (std::sqrt(1 + cos_) + 1) / cos_;
   }
 
@@ -49,7 +50,7 @@ class HalfVectorChart {
 
   /// The outgoing direction of a point of the disk. @param at r in [0, 1].
   Direction direction(Polar<T> at) const noexcept {
-    const T c = std::cos(at.phi), s = std::sin(at.phi);
+    const auto [s, c] = sin_cos(at.phi);
     const Meridian h = meridian(c);
     const T q = at.r * at.r, rest = (1 - at.r) * (1 + at.r);
     const T d = scale_ * rest + q / h.m;
@@ -83,7 +84,7 @@ class HalfVectorChart {
     }
     const T q = std::min(scale_ * x / (below / m + scale_ * x), T(1));
     const T d = scale_ * (1 - q) + q / m;
-    return {{std::sqrt(q), across > 0 ? fast_atan2(h.y, h.x) : T(0)}, 2 * length * scale_ / (d * d)};
+    return {{std::sqrt(q), select(across > 0, fast_atan2(h.y, h.x), T(0))}, 2 * length * scale_ / (d * d)};
   }
 
  private:
@@ -95,7 +96,7 @@ class HalfVectorChart {
     const T norm = std::sqrt(cos_ * cos_ + sin_ * sin_ * c * c);
     const T cos2 = -sin_ * c / norm, sin2 = cos_ / norm;  // of 2 theta_max
     const T large = (1 + std::abs(cos2)) / 2, small = sin2 * sin2 / (4 * large);
-    const T cos_max = std::sqrt(cos2 > 0 ? large : small), sin_max2 = cos2 > 0 ? small : large;
+    const T cos_max = std::sqrt(select(cos2 > 0, large, small)), sin_max2 = select(cos2 > 0, small, large);
     return {sin_max2 / (1 + cos_max), cos_max, std::sqrt(sin_max2), norm};
   }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <gonio/mapping/concentric.h>
-#include <gonio/mapping/fast_atan2.h>
+#include <gonio/mapping/fast_math.h>
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +26,8 @@ template <class T>
 Vec3<T> polar_to_direction(Polar<T> p) noexcept {
   const T sin_theta =
       p.r * std::sqrt(2 - p.r * p.r);  // sin^2 = (1 - cos)(1 + cos), no cancellation
-  return {sin_theta * std::cos(p.phi), sin_theta * std::sin(p.phi), (1 - p.r) * (1 + p.r)};
+  const SinCos<T> phi = sin_cos(p.phi);
+  return {sin_theta * phi.cos, sin_theta * phi.sin, (1 - p.r) * (1 + p.r)};
 }
 
 /// The inverse of polar_to_direction(). @param w a unit vector with w.z >= 0.
@@ -35,7 +36,7 @@ Vec3<T> polar_to_direction(Polar<T> p) noexcept {
 /// phi that of fast_atan2().
 template <class T>
 Polar<T> direction_to_polar(const Vec3<T>& w) noexcept {
-  const T r2 = w.z < T(0.5) ? 1 - w.z : (w.x * w.x + w.y * w.y) / (1 + w.z);
+  const T r2 = select(w.z < T(0.5), 1 - w.z, (w.x * w.x + w.y * w.y) / (1 + w.z));
   return {std::min(std::sqrt(r2), T(1)), fast_atan2(w.y, w.x)};
 }
 

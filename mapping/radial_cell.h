@@ -3,22 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-namespace gonio {
+#include <gonio/mapping/fast_math.h>
 
-/// cos(acos(x) / 3) for x in [-1, 1].
-template <class T>
-T cos_third(T x) noexcept {
-  using std::acos, std::cos;
-  return cos(acos(x) / 3);
-}
-/// Without the two library calls, relative error below 3e-7. Its square root at x = -1 taken out the function is analytic:
-/// a polynomial through 9 Chebyshev nodes of sqrt((1 + x) / 2), whose own relative error is 7e-9.
-inline float cos_third(float x) noexcept {
-  const float y = std::sqrt(0.5f * x + 0.5f), y2 = y * y, y4 = y2 * y2;
-  const float p01 = 0.5000000037f + 0.5773496614f * y, p23 = -0.1110944928f + 0.05327935085f * y;
-  const float p45 = -0.03192541214f + 0.01960032094f * y, p67 = -0.01023750833f + 0.003654119569f * y;
-  return (p01 + y2 * p23) + y4 * ((p45 + y2 * p67) - 0.0006260453235f * y4);
-}
+namespace gonio {
 
 /// One cell of a meridian between the radii r0 and r0 + h, with a density that is linear in r
 /// (Havran et al. 2003, eq. 7): d(s) = d0 + (d1 - d0) s at r(s) = r0 + h s, s in [0, 1].
@@ -46,25 +33,24 @@ struct RadialCell {
   ///
   /// @param tau in (0, 1]. @pre mass(1) > 0.
   T invert(T tau) const noexcept {
-    using std::cbrt, std::sqrt;  // other types of T bring their own
-    const T delta = d1 - d0;
-    const T scale = 1 / (r0 * (d0 + d1) + h * (d0 + 2 * d1) / 3);
-    const T c = 2 * r0 * d0 * scale;
+    using std::sqrt;  // other types of T bring their own
+    const T delta = d1 - d0, third = T(1) / 3;
+    const T scale = 1 / (r0 * (d0 + d1) + h * (d0 + 2 * d1) * third);
+    const T c = 2 * r0 * d0 * scale, c3 = c * third;
     const T b = (r0 * delta + h * d0) * scale;
-    const T a = 2 * h * delta * scale / 3;
+    const T a = 2 * h * delta * third * scale;
 
-    const T p3 = std::max((b * tau + c * c / 3) / 3, T(0));            // P / 3
-    const T q2 = c * c * c / 27 + (b * c / 3 + a * tau) * tau / 2;     // Q / 2
-    const T root_p3 = sqrt(p3);
-    const T cube = p3 * root_p3;
-    T z;
-    if (q2 >= cube) {  // one real root: Cardan, here a sum of positive terms
-      const T t = cbrt(q2 + sqrt(q2 - cube) * sqrt(q2 + cube));
-      z = t > 0 ? t + p3 / t : T(0);
-    } else {  // three: the trigonometric form; the angle is in [0, pi/3], so the cosine is >= 1/2
-      z = 2 * root_p3 * cos_third(std::max(q2 / cube, T(-1)));
-    }
-    const T denominator = z + c / 3;
+    const T p3 = std::max(b * tau * third + c3 * c3, T(0));         // P / 3
+    const T q2 = c3 * c3 * c3 + (b * c3 + a * tau) * (tau / 2);     // Q / 2
+    const T root_p3 = sqrt(p3), cube = p3 * root_p3;
+    // One real root (q2 >= cube): Cardan, here a sum of positive terms. Three: the trigonometric form, whose angle
+    // is in [0, pi/3], so that the cosine is >= 1/2. Each form is 2 sqrt(P/3) where the other one holds, so that no
+    // case is needed.
+    const T larger = std::max(q2, cube);
+    const CubeRoot<T> t = cube_root(larger + sqrt(larger - cube) * sqrt(larger + cube));
+    const T trigonometric = cos_third(std::max(T(-1), q2 / larger));
+    const T z = (t.root + p3 * t.inverse) + 2 * root_p3 * (trigonometric - 1);
+    const T denominator = z + c3;
     return denominator > tau ? tau / denominator : T(1);
   }
 };

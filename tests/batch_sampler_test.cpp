@@ -129,6 +129,38 @@ proof::Subject subject_of(const BatchSampler& batch) {
           }};
 }
 
+/// The same from what it answers for one element.
+proof::Subject one_at_a_time(const BatchSampler& batch) {
+  return {[&](const glm::vec3& wi, const glm::vec2& u) { return batch.sample(wi, u); },
+          [&](const glm::vec3& wi, const glm::vec3& wo) { return static_cast<double>(batch.pdf(wi, wo)); },
+          [&](const glm::vec3& wi, const glm::vec3& wo) { return batch.eval(wi, wo); }};
+}
+
+TEST_P(BatchSamplerOn, OneElementIsThatOfABatch) {
+  for (const Case& c : cases()) {
+    SCOPED_TRACE(c.name);
+    const BatchSampler& batch = c.batch;
+    Draws d(5003, 1);
+    d.sample(batch, d.u.size());
+    const float largest = *std::max_element(d.pdf.begin(), d.pdf.end());
+    Vectors f_r(d.u.size());
+    std::vector<float> pdf(d.u.size());
+    batch.eval_n(d.u.size(), d.wi.arrays(), d.wo.arrays(), f_r.arrays());
+    batch.pdf_n(d.u.size(), d.wi.arrays(), d.wo.arrays(), pdf.data());
+    for (std::size_t k = 0; k < d.u.size(); ++k) {
+      const auto s = batch.sample(d.wi[k], {d.u[k], d.v[k]});
+      ASSERT_EQ(d.pdf[k] > 0, s.has_value()) << k;
+      ASSERT_NEAR(batch.pdf(d.wi[k], d.wo[k]), pdf[k], 1e-4 * pdf[k] + 1e-6 * largest) << k;
+      const glm::vec3 value = batch.eval(d.wi[k], d.wo[k]);
+      for (int i = 0; i < 3; ++i) ASSERT_NEAR(value[i], f_r[k][i], 1e-4 * f_r[k][i] + 1e-6 * largest) << k;
+      if (!s) continue;
+      ASSERT_LT(glm::length(d.wo[k] - s->wo), 1e-5f) << k;
+      ASSERT_NEAR(d.pdf[k], s->pdf, 1e-4 * s->pdf) << k;
+      for (int i = 0; i < 3; ++i) ASSERT_NEAR(d.weight[k][i], s->weight[i], 1e-4 * s->weight[i]) << k;
+    }
+  }
+}
+
 TEST_P(BatchSamplerOn, SamplesAsSamplerDoes) {
   for (const Case& c : cases()) {
     SCOPED_TRACE(c.name);
@@ -191,6 +223,7 @@ TEST_P(BatchSamplerOn, InvariantsHold) {
       options.density_floor = c.self_contained ? 1e-2 : 1e-6;
       options.direction_bound = c.chart == Chart::half ? 1e-3 : 5e-4;
       EXPECT_THAT_SAMPLER_INVARIANTS_HOLD(subject_of(batch), theta_i, options) << c.name;
+      EXPECT_THAT_SAMPLER_INVARIANTS_HOLD(one_at_a_time(batch), theta_i, options) << c.name << ", one at a time";
     }
   }
 }

@@ -7,28 +7,29 @@
 #define HWY_TARGET_INCLUDE "gonio/brdf/batch/batch_stack.cpp"
 #include <hwy/foreach_target.h>
 
-#include <gonio/brdf/batch/stack-inl.h>
+#include <gonio/brdf/batch/draw-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace gonio {
 namespace HWY_NAMESPACE {
 
 void sample_kernel(const BatchLayout& layout, std::size_t count, const float* const (&in)[3], float* const (&out)[4]) {
-  for_vectors<3, 4>(count, in, out, [&](const V(&x)[3], V(&y)[4]) HWY_ATTR {
-    const Draw s = sample_stack(layout, place_of(layout, x[0]), x[0], x[1], x[2]);
-    y[0] = s.wo.x, y[1] = s.wo.y, y[2] = s.wo.z, y[3] = s.pdf;
+  for_blocks(count, in, out, [&](auto elements, const float* const (&x)[3], float* const (&y)[4]) GONIO_INLINED {
+    HWY_ALIGN float r[block_size];
+    for (std::size_t k = 0; k < elements; k += hn::Lanes(D())) hn::Store(incidence(hn::LoadU(D(), x[0] + k)).r, D(), r + k);
+    draw_stack(layout, elements, Places(layout.angles, elements, x[0], r), x[0], x[1], x[2], y[0], y[1], y[2], y[3]);
   });
 }
 
 void pdf_kernel(const BatchLayout& layout, std::size_t count, const float* const (&in)[4], float* const (&out)[1]) {
-  for_vectors<4, 1>(count, in, out, [&](const V(&x)[4], V(&y)[1]) HWY_ATTR {
-    y[0] = pdf_stack(layout, place_of(layout, x[0]), x[0], {x[1], x[2], x[3]});
+  for_vectors<4, 1>(count, in, out, [&](const V(&x)[4], V(&y)[1]) GONIO_INLINED {
+    y[0] = pdf_stack(layout, place_of(layout.angles, incidence(x[0])), x[0], {x[1], x[2], x[3]});
   });
 }
 
 void invert_kernel(const BatchLayout& layout, std::size_t count, const float* const (&in)[4], float* const (&out)[3]) {
-  for_vectors<4, 3>(count, in, out, [&](const V(&x)[4], V(&y)[3]) HWY_ATTR {
-    const Inverted s = invert_stack(layout, place_of(layout, x[0]), x[0], {x[1], x[2], x[3]});
+  for_vectors<4, 3>(count, in, out, [&](const V(&x)[4], V(&y)[3]) GONIO_INLINED {
+    const Inverted s = invert_stack(layout, place_of(layout.angles, incidence(x[0])), x[0], {x[1], x[2], x[3]});
     y[0] = s.u, y[1] = s.v, y[2] = s.pdf;
   });
 }

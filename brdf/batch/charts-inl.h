@@ -11,6 +11,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace gonio {
 namespace HWY_NAMESPACE {
+inline namespace GONIO_LANES {
 
 struct Direction {
   V x, y, z;
@@ -23,17 +24,15 @@ struct Folded {
 };
 HWY_INLINE Folded square_to_diagram(V u, V v, bool half) {
   const V x = hn::Sub(hn::Add(u, u), set(1)), y = hn::Sub(hn::Add(v, v), set(1));
-  const M beside = hn::Gt(hn::Abs(x), hn::Abs(y));
-  const V radius = hn::IfThenElse(beside, x, y), across = hn::IfThenElse(beside, y, x);
-  const V part = hn::Mul(set(0.125f), hn::IfThenElseZero(hn::Ne(radius, zero()), hn::Div(across, radius)));
-  const V axis = hn::IfThenElse(hn::Gt(radius, zero()), zero(), set(0.5f));
-  V turn = hn::IfThenElse(beside, hn::Add(axis, part), hn::Sub(hn::Add(axis, set(0.25f)), part));
-  turn = hn::IfThenElse(hn::Lt(turn, zero()), hn::Add(turn, set(1)), turn);
-  turn = hn::IfThenElseZero(hn::And(hn::Lt(turn, set(1)), hn::Ne(radius, zero())), turn);
+  const V ax = hn::Abs(x), ay = hn::Abs(y), radius = hn::Max(ax, ay);
+  const V part = hn::Mul(set(0.125f), hn::Div(hn::Min(ax, ay), hn::Max(radius, set(1.17549435e-38f))));
+  V turn = hn::IfThenElse(hn::Gt(ax, ay), part, hn::Sub(set(0.25f), part));  // in the first quadrant
+  turn = hn::IfThenElse(hn::Lt(x, zero()), hn::Sub(set(0.5f), turn), turn);
+  const M lower = hn::Lt(y, zero());
   const V r2 = hn::Min(hn::Mul(radius, radius), set(1));
-  if (!half) return {turn, r2, hn::MaskFromVec(zero())};
-  const M mirrored = hn::Gt(turn, set(0.5f));
-  return {hn::Mul(set(2), hn::IfThenElse(mirrored, hn::Sub(set(1), turn), turn)), r2, mirrored};
+  if (half) return {hn::Add(turn, turn), r2, lower};
+  turn = hn::IfThenElse(lower, hn::Sub(set(1), turn), turn);
+  return {hn::IfThenElseZero(hn::Lt(turn, set(1)), turn), r2, hn::MaskFromVec(zero())};
 }
 
 /// The inverse of square_to_diagram().
@@ -146,6 +145,7 @@ struct HalfChart {
   }
 };
 
+}  // namespace GONIO_LANES
 }  // namespace HWY_NAMESPACE
 }  // namespace gonio
 HWY_AFTER_NAMESPACE();

@@ -1,4 +1,5 @@
-// Arithmetic on vectors of floats, once per instruction set: included by the kernels' own files alone.
+// Arithmetic on vectors of floats, once per instruction set: included by the kernels' own files alone. They
+// may define GONIO_LANE_CAP as 1 or 2: then vectors have no more elements, else as many as the machine allows.
 #if defined(GONIO_BATCH_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef GONIO_BATCH_LANES_INL_H
 #undef GONIO_BATCH_LANES_INL_H
@@ -10,13 +11,32 @@
 
 #include <hwy/highway.h>
 
+// Names of its own for each: what is not inlined would be taken for the same function.
+#undef GONIO_LANES
+#ifndef GONIO_LANE_CAP
+#define GONIO_LANES many
+#elif GONIO_LANE_CAP == 1
+#define GONIO_LANES one
+#else
+#define GONIO_LANES pairs
+#endif
+
+// Of a lambda. Sizes of 1 that the compiler knows leave nothing of the loops over elements.
+#undef GONIO_INLINED
+#define GONIO_INLINED HWY_ATTR __attribute__((always_inline))
+
 HWY_BEFORE_NAMESPACE();
 namespace gonio {
 namespace HWY_NAMESPACE {
+inline namespace GONIO_LANES {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
+#ifdef GONIO_LANE_CAP
+using D = hn::CappedTag<float, GONIO_LANE_CAP>;
+#else
 using D = hn::ScalableTag<float>;
+#endif
 using DI = hn::RebindToSigned<D>;
 using V = hn::Vec<D>;
 using VI = hn::Vec<DI>;
@@ -26,13 +46,38 @@ HWY_INLINE V set(float x) { return hn::Set(D(), x); }
 HWY_INLINE VI set_int(int x) { return hn::Set(DI(), x); }
 HWY_INLINE V zero() { return hn::Zero(D()); }
 HWY_INLINE V clamp01(V x) { return hn::Min(hn::Max(x, zero()), set(1)); }
+// Gathers. (Those of vectors of two would read four.)
+#ifndef GONIO_LANE_CAP
 HWY_INLINE V at(const float* base, VI index) { return hn::GatherIndex(D(), base, index); }
+HWY_INLINE VI at(const int* base, VI index) { return hn::GatherIndex(DI(), base, index); }
+#elif GONIO_LANE_CAP == 1
+HWY_INLINE V at(const float* base, VI index) { return set(base[hn::GetLane(index)]); }
+HWY_INLINE VI at(const int* base, VI index) { return set_int(base[hn::GetLane(index)]); }
+#endif
+/// Towards 0, of what an int holds.
+HWY_INLINE VI truncated(V x) {
+#if GONIO_LANE_CAP == 1
+  return set_int(static_cast<int>(hn::GetLane(x)));
+#else
+  return hn::ConvertTo(DI(), x);
+#endif
+}
+/// The lanes of a vector one by one.
+template <class Vector>
+struct Lanes {
+  using Tag = hn::DFromV<Vector>;
+  HWY_ALIGN hn::TFromD<Tag> x[hn::MaxLanes(Tag())];
+
+  explicit HWY_INLINE Lanes(Vector v) { hn::Store(v, Tag(), x); }
+  HWY_INLINE Vector vector() const { return hn::Load(Tag(), x); }
+};
+#if !(GONIO_LANE_CAP == 2)
 /// The values at index and index + 1. Where gathers are instructions, one of 64 bits is half as dear as two of 32.
 struct Two {
   V first, second;
 };
 HWY_INLINE Two two_at(const float* base, VI index) {
-#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX2
+#if !defined(GONIO_LANE_CAP) && (HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX2)
   const hn::Repartition<std::int64_t, D> wide;
   const hn::Half<DI> half;
   const auto* pairs = reinterpret_cast<const std::int64_t*>(base);
@@ -44,15 +89,31 @@ HWY_INLINE Two two_at(const float* base, VI index) {
   return {at(base, index), at(base + 1, index)};
 #endif
 }
+/// Four arrays with their values in turn.
+HWY_INLINE void load4(const float* x, V& a, V& b, V& c, V& d) {
+#if GONIO_LANE_CAP == 1
+  a = set(x[0]), b = set(x[1]), c = set(x[2]), d = set(x[3]);
+#else
+  hn::LoadInterleaved4(D(), x, a, b, c, d);
+#endif
+}
+#endif
+
 HWY_INLINE V mix(V a, V x, V y) { return hn::MulAdd(a, y, hn::NegMulAdd(a, x, x)); }  // (1 - a) x + a y
 
 /// x / y, 0 where y is not positive.
 HWY_INLINE V quotient(V x, V y) { return hn::IfThenElseZero(hn::Gt(y, zero()), hn::Div(x, y)); }
 
-HWY_INLINE V polynomial(V, float c0) { return set(c0); }
+/// c0 + c1 x + ... in steps of x^2: half the waiting of Horner's steps.
+HWY_INLINE V in_pairs(V, V, float c0) { return set(c0); }
+HWY_INLINE V in_pairs(V x, V, float c0, float c1) { return hn::MulAdd(set(c1), x, set(c0)); }
 template <class... C>
-HWY_INLINE V polynomial(V x, float c0, C... c) {
-  return hn::MulAdd(polynomial(x, c...), x, set(c0));
+HWY_INLINE V in_pairs(V x, V x2, float c0, float c1, C... c) {
+  return hn::MulAdd(in_pairs(x, x2, c...), x2, hn::MulAdd(set(c1), x, set(c0)));
+}
+template <class... C>
+HWY_INLINE V polynomial(V x, C... c) {
+  return in_pairs(x, hn::Mul(x, x), c...);
 }
 
 /// sin and cos for |x| <= 8: error 1e-7, absolute. Cephes' polynomials (sinf.c) over an eighth of a turn either side of the axes.
@@ -84,36 +145,25 @@ HWY_INLINE V abs_atan2(V y, V x) {
   return hn::IfThenElse(hn::Lt(x, zero()), hn::Sub(set(3.14159265f), p), p);
 }
 
-/// The cube root of x >= 0, 4e-7 relative where x is a normal number: a third of the exponent, then two of Halley's steps.
-/// Others are kept from making numbers so small that the machine computes them in microcode.
-HWY_INLINE V cube_root(V value) {
+/// cube_root() of fast_math.h: inputs are kept from making numbers so small that the machine computes them in microcode.
+struct CubeRoot {
+  V root, inverse;
+};
+HWY_INLINE CubeRoot cube_root(V value) {
   const V x = hn::Max(value, set(1e-30f));
   const V bits = hn::ConvertTo(D(), hn::BitCast(DI(), x));
-  V t = hn::BitCast(D(), hn::Add(hn::ConvertTo(DI(), hn::Mul(bits, set(1.0f / 3))), set_int(0x2a514067)));
-  for (int step = 0; step < 2; ++step) {
-    const V cube = hn::Mul(hn::Mul(t, t), t);
-    t = hn::Mul(t, hn::Div(hn::MulAdd(set(2), x, cube), hn::MulAdd(set(2), cube, x)));
-  }
-  return hn::IfThenElseZero(hn::Gt(value, zero()), t);
+  V y = hn::BitCast(D(), hn::ConvertTo(DI(), hn::NegMulAdd(bits, set(1.0f / 3), set(1418657792.0f))));  // 0x548f0000
+  const V c = hn::Mul(hn::Mul(x, y), hn::Mul(y, y));
+  y = hn::Mul(y, hn::NegMulAdd(hn::NegMulAdd(c, set(0.451924025f), set(1.16826499f)), c, set(1.72261893f)));
+  const V root = hn::Mul(hn::Mul(x, y), y), rest = hn::NegMulAdd(root, y, set(1));
+  return {hn::MulAdd(hn::Mul(root, rest), set(2.0f / 3), root), hn::MulAdd(hn::Mul(y, rest), set(1.0f / 3), y)};
 }
 
-/// cos(acos(x) / 3) for x in [-1, 1]. Its square root at x = -1 taken out, it is analytic: a polynomial through 9
-/// Chebyshev nodes of sqrt((1 + x) / 2), whose own relative error is 7e-9.
+/// cos_third() of fast_math.h.
 HWY_INLINE V cos_third(V x) {
   const V y = hn::Sqrt(hn::Max(hn::MulAdd(set(0.5f), x, set(0.5f)), zero()));
   return polynomial(y, 0.5000000037f, 0.5773496614f, -0.1110944928f, 0.05327935085f, -0.03192541214f, 0.01960032094f,
                     -0.01023750833f, 0.003654119569f, -0.0006260453235f);
-}
-
-/// find_cell(): from `first`, the last of `count` - 1 ascending values that is below t. Returns its index.
-HWY_INLINE VI find(const float* base, VI first, int count, V t) {
-  for (int length = count - 1; length > 1;) {
-    const int half = length / 2;
-    const VI probe = hn::Add(first, set_int(half));
-    first = hn::IfThenElse(hn::RebindMask(DI(), hn::Lt(at(base, probe), t)), probe, first);
-    length -= half;
-  }
-  return first;
 }
 
 /// RadialCell.
@@ -121,6 +171,7 @@ struct Cell {
   V r0, h, d0, d1;
 
   HWY_INLINE V density(V s) const { return mix(s, d0, d1); }
+  HWY_INLINE V place(V r) const { return clamp01(hn::Div(hn::Sub(r, r0), h)); }
   HWY_INLINE V mass(V s) const {
     const V ds = density(s), sh = hn::Mul(s, h);
     const V third = hn::Mul(hn::Mul(sh, set(1.0f / 3)), hn::MulAdd(set(2), ds, d0));
@@ -132,7 +183,7 @@ struct Cell {
     const V one = set(1), third = set(1.0f / 3);
     const V sum = hn::MulAdd(r0, hn::Add(d0, d1), hn::Mul(hn::Mul(h, third), hn::MulAdd(set(2), d1, d0)));
     const V scale = hn::Div(one, sum);
-    const V tau = hn::Min(hn::Div(hn::Mul(inside, scale), h), one);
+    const V tau = hn::Min(hn::Div(inside, hn::Mul(sum, h)), one);
     const V delta = hn::Sub(d1, d0);
     const V c3 = hn::Mul(hn::Mul(set(2.0f / 3), hn::Mul(r0, d0)), scale);  // c / 3
     const V b = hn::Mul(hn::MulAdd(r0, delta, hn::Mul(h, d0)), scale);
@@ -140,12 +191,11 @@ struct Cell {
     const V c3_2 = hn::Mul(c3, c3);
     const V p3 = hn::Max(hn::MulAdd(hn::Mul(b, tau), third, c3_2), zero());
     const V q2 = hn::MulAdd(hn::MulAdd(b, c3, hn::Mul(a, tau)), hn::Mul(tau, set(0.5f)), hn::Mul(c3_2, c3));
-    const V root_p3 = hn::Sqrt(p3), cube = hn::Mul(p3, root_p3);
-    const V t = cube_root(hn::Add(q2, hn::Mul(hn::Sqrt(hn::Max(hn::Sub(q2, cube), zero())),
-                                              hn::Sqrt(hn::Max(hn::Add(q2, cube), zero())))));
-    const V one_root = hn::Add(t, quotient(p3, t));
-    const V three_roots = hn::Mul(hn::Add(root_p3, root_p3), cos_third(hn::Max(hn::Div(q2, cube), set(-1))));
-    const V denominator = hn::Add(hn::IfThenElse(hn::Ge(q2, cube), one_root, three_roots), c3);
+    const V root_p3 = hn::Sqrt(p3), cube = hn::Mul(p3, root_p3), larger = hn::Max(q2, cube);
+    const CubeRoot t = cube_root(hn::MulAdd(hn::Sqrt(hn::Sub(larger, cube)), hn::Sqrt(hn::Add(larger, cube)), larger));
+    const V trigonometric = cos_third(hn::Max(hn::Div(q2, hn::Max(larger, set(1e-30f))), set(-1)));
+    const V one_root = hn::MulAdd(p3, t.inverse, t.root);
+    const V denominator = hn::Add(hn::MulAdd(hn::Add(root_p3, root_p3), hn::Sub(trigonometric, one), one_root), c3);
     const V s = hn::IfThenElse(hn::Gt(denominator, tau), hn::Div(tau, denominator), one);
     return hn::IfThenElseZero(hn::And(hn::Gt(inside, zero()), hn::Gt(hn::Mul(sum, h), zero())), s);
   }
@@ -158,6 +208,24 @@ HWY_INLINE V invert_azimuth(V width, V m0, V m1, V inside) {
   const V n0 = quotient(m0, sum);
   const V root = hn::Sqrt(hn::Max(hn::MulAdd(hn::NegMulAdd(set(2), n0, set(1)), x, hn::Mul(n0, n0)), zero()));
   return hn::Min(quotient(x, hn::Add(n0, root)), set(1));
+}
+
+/// A position in one of two diagrams: the mass along its meridian, and the density there.
+struct Displaced {
+  V mass, r, pdf;
+};
+/// Displacement::density() of two positions, at the radius between them.
+HWY_INLINE V displaced_density(V w0, V w1, V whole_mass, const Displaced& a, const Displaced& b, V r) {
+  // w0 x0 / y0 + w1 x1 / y1 over the terms with weight; 0 if one of these has y = 0: the sum is infinite.
+  const M use0 = hn::Gt(w0, zero()), use1 = hn::Gt(w1, zero());
+  const auto quotients = [&](V x0, V y0, V x1, V y1) HWY_ATTR {
+    const M infinite = hn::Or(hn::AndNot(hn::Gt(y0, zero()), use0), hn::AndNot(hn::Gt(y1, zero()), use1));
+    const V sum = hn::Add(hn::IfThenElseZero(use0, hn::Mul(w0, hn::Div(x0, y0))), hn::IfThenElseZero(use1, hn::Mul(w1, hn::Div(x1, y1))));
+    return hn::IfThenZeroElse(infinite, sum);
+  };
+  const V slope_phi = quotients(whole_mass, a.mass, whole_mass, b.mass);
+  const V slope_r2 = quotients(a.mass, hn::Mul(a.pdf, a.r), b.mass, hn::Mul(b.pdf, b.r));
+  return quotient(whole_mass, hn::Mul(hn::Mul(slope_phi, slope_r2), r));
 }
 
 /// monotone_root() in every lane, until all are done.
@@ -183,6 +251,7 @@ HWY_INLINE V root(const Function& function, V x, V lo, V hi) {
   return x;
 }
 
+}  // namespace GONIO_LANES
 }  // namespace HWY_NAMESPACE
 }  // namespace gonio
 HWY_AFTER_NAMESPACE();

@@ -9,69 +9,66 @@
 #include <algorithm>
 
 #include <gonio/brdf/batch/charts-inl.h>
+#include <gonio/brdf/batch/frame-inl.h>
 #include <gonio/brdf/batch/maps-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace gonio {
 namespace HWY_NAMESPACE {
+inline namespace GONIO_LANES {
+
+/// Elements that are looked up together, a multiple of the lanes of a vector.
+#if GONIO_LANE_CAP == 1
+constexpr std::size_t block_size = 1;
+#else
+constexpr std::size_t block_size = 128;
+#endif
 
 /// The diagram before an incident angle, and how far the angle is from there to the next: Stack::Place.
 struct Place {
   VI k;
   V alpha;
 };
-HWY_INLINE Place place_among(const float* angles, int count, V theta_i) {
-  if (count == 1) return {hn::Zero(DI()), zero()};
-  const VI k = find(angles, hn::Zero(DI()), count, theta_i);
-  const V first = at(angles, k);
-  return {k, clamp01(hn::Div(hn::Sub(theta_i, first), hn::Sub(at(angles + 1, k), first)))};
+HWY_INLINE Place place_of(const BatchAngles& angles, const Incidence& i) {
+  if (angles.count == 1) return {hn::Zero(DI()), zero()};
+  const V part = hn::Mul(i.r, set(BatchAngles::guide_parts));
+  VI k = at(angles.guide.data(), hn::Min(truncated(part), set_int(BatchAngles::guide_parts - 1)));
+  for (int step = 0; step < angles.guide_steps; ++step) {
+    const M before = hn::Lt(at(angles.radii.data() + 1, k), i.r);
+    const VI next = hn::IfThenElse(hn::RebindMask(DI(), before), hn::Add(k, set_int(1)), k);
+    k = hn::Min(next, set_int(angles.count - 2));
+  }
+  const Two around = two_at(angles.values.data(), k);
+  return {k, clamp01(hn::Div(hn::Sub(i.theta, around.first), hn::Sub(around.second, around.first)))};
 }
 
-HWY_INLINE Place place_of(const BatchLayout& layout, V theta_i) {
-  if (layout.angles == 1) return {hn::Zero(DI()), zero()};
-  const float* angles = layout.values.data();
-  const V part = hn::Mul(theta_i, set(BatchLayout::guide_parts / (pi<float> / 2)));
-  const VI entry = hn::Min(hn::ConvertTo(DI(), hn::Max(part, zero())), set_int(BatchLayout::guide_parts - 1));
-  VI k = hn::GatherIndex(DI(), layout.guide.data(), entry);
-  Two around = two_at(angles, k);
-  for (int step = 0; step < layout.guide_steps; ++step) {
-    const M before = hn::Lt(around.second, theta_i);
-    const VI next = hn::IfThenElse(hn::RebindMask(DI(), before), hn::Add(k, set_int(1)), k);
-    k = hn::Min(next, set_int(layout.angles - 2));
-    around = two_at(angles, k);
+/// Those of `count` elements.
+struct Places {
+  HWY_ALIGN int k[block_size];
+  HWY_ALIGN float alpha[block_size];
+
+  HWY_INLINE Places(const BatchAngles& angles, std::size_t count, const float* theta_i, const float* r) {
+    const D d;
+    for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+      const Place place = place_of(angles, {hn::LoadU(d, theta_i + i), hn::LoadU(d, r + i)});
+      hn::Store(place.k, DI(), k + i), hn::Store(place.alpha, d, alpha + i);
+    }
   }
-  return {k, clamp01(hn::Div(hn::Sub(theta_i, around.first), hn::Sub(around.second, around.first)))};
-}
+};
 
 /// Calls maps(lanes) with what serves a place: one diagram, a blend or a displacement.
 template <class Call>
 HWY_INLINE auto with_lanes(const BatchLayout& layout, const Place& place, const Call& call) {
-  const float* blocks = layout.values.data() + layout.angles;
   const VI block = hn::Mul(place.k, set_int(layout.stride));
-  if (layout.angles == 1) return call(OneDiagram{layout, blocks, block});
+  if (layout.angles.count == 1) return call(OneDiagram{layout, {layout.values()}, block});
   if (layout.interpolation == Interpolation::nearest) {
     const VI next = hn::Add(block, set_int(layout.stride));
     const auto first_is_closer = hn::RebindMask(DI(), hn::Lt(place.alpha, set(0.5f)));
-    return call(OneDiagram{layout, blocks, hn::IfThenElse(first_is_closer, block, next)});
+    return call(OneDiagram{layout, {layout.values()}, hn::IfThenElse(first_is_closer, block, next)});
   }
-  if (layout.interpolation == Interpolation::blend) return call(BlendLanes{layout, blocks, block, place.alpha});
-  return call(DisplacementLanes(layout, blocks, block, place.alpha));
-}
-
-struct Draw {
-  Direction wo;
-  V pdf;
-};
-/// Stack::sample().
-HWY_INLINE Draw sample_stack(const BatchLayout& layout, const Place& place, V theta_i, V u, V v) {
-  const Folded uv = square_to_diagram(u, v, layout.half_azimuth);
-  const OnDisk s = with_lanes(layout, place, [&](const auto& lanes) HWY_ATTR { return lanes.sample(uv.u, uv.v); });
-  const V r = hn::Min(s.r, set(1 - 0.5f * 1.1920929e-7f));
-  SinCos phi = sin_cos(s.phi);
-  phi.sin = hn::IfThenElse(uv.mirrored, hn::Neg(phi.sin), phi.sin);
-  if (!layout.half_chart) return {to_hemisphere(r, phi), s.pdf};
-  const HalfChart::Image image = HalfChart(theta_i).direction(r, phi);
-  return {image.wo, hn::Div(s.pdf, image.jacobian)};
+  if (layout.interpolation == Interpolation::blend)
+    return call(DiagramLanes<Blended>{layout, {layout.values(), layout.stride, place.alpha}, block});
+  return call(DisplacementLanes(layout, block, place.alpha));
 }
 
 HWY_INLINE DiskPlace to_disk(const BatchLayout& layout, V theta_i, const Direction& wo) {
@@ -101,34 +98,7 @@ HWY_INLINE Inverted invert_stack(const BatchLayout& layout, const Place& place, 
           hn::IfThenElseZero(found, hn::Div(at.pdf, disk.jacobian))};
 }
 
-/// Runs body(inputs, outputs) on whole vectors; the last, incomplete one by way of copies.
-template <int inputs, int outputs, class Body>
-HWY_INLINE void for_vectors(std::size_t count, const float* const (&in)[inputs], float* const (&out)[outputs],
-                            const Body& body) {
-  const D d;
-  const std::size_t lanes = hn::Lanes(d);
-  V x[inputs], y[outputs];
-  std::size_t k = 0;
-  for (; k + lanes <= count; k += lanes) {
-    for (int i = 0; i < inputs; ++i) x[i] = hn::LoadU(d, in[i] + k);
-    body(x, y);
-    for (int i = 0; i < outputs; ++i) hn::StoreU(y[i], d, out[i] + k);
-  }
-  const std::size_t rest = count - k;
-  if (rest == 0) return;
-  HWY_ALIGN float copy[hn::MaxLanes(d)] = {};
-  for (int i = 0; i < inputs; ++i) {
-    std::copy_n(in[i] + k, rest, copy);
-    std::fill(copy + rest, copy + lanes, in[i][count - 1]);
-    x[i] = hn::Load(d, copy);
-  }
-  body(x, y);
-  for (int i = 0; i < outputs; ++i) {
-    hn::Store(y[i], d, copy);
-    std::copy_n(copy, rest, out[i] + k);
-  }
-}
-
+}  // namespace GONIO_LANES
 }  // namespace HWY_NAMESPACE
 }  // namespace gonio
 HWY_AFTER_NAMESPACE();

@@ -24,12 +24,12 @@ glm::dvec3 cross(const glm::dvec3& a, const glm::dvec3& b) {
 
 double dot(const glm::dvec3& a, const glm::dvec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-/// Halves a side twelve times, each time keeping the half whose ends are further apart. Cube roots,
-/// the steepest that a density with isolated zeros makes, come down to 1/16; a jump stays.
+/// Halves a side fourteen times, each time keeping the half whose ends are further apart. Cube roots,
+/// the steepest that a density with isolated zeros makes, come down to 1/25; a jump stays.
 bool torn(const Map& map, Point a, Point b, glm::vec3 wa, glm::vec3 wb) {
   const double whole = distance(wa, wb);
   if (whole < 1e-3) return false;  // nothing to see, and near the rounding of a direction after halving
-  for (int halving = 0; halving < 12; ++halving) {
+  for (int halving = 0; halving < 14; ++halving) {
     const Point middle = 0.5 * (a + b);
     const auto s = map(middle);
     if (!s) return false;

@@ -377,7 +377,9 @@ class Run {
       along([&](double t) { return density(r0 + t * (r1 - r0), at.phi); }, p.s.wo, "r");
       jumps_of_map += has_jump<glm::vec3>(
           [&](double t) {
-            const auto s = s_.sample(incident(from + t * (to - from)), p.u);
+            const double theta_i = from + t * (to - from);
+            auto s = s_.sample(incident(theta_i), p.u);
+            if (!s) s = s_.sample(incident(theta_i + 2e-5), p.u);  // to rounding on a line without density
             return s ? s->wo : glm::vec3(0, 0, -1);
           },
           [](const glm::vec3& a, const glm::vec3& b) { return static_cast<double>(largest_component(a, b)); },

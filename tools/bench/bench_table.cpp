@@ -135,22 +135,32 @@ void in_batches(benchmark::State& state, Call call, const S& sampler) {
   state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * queries));
 }
 
+/// As Sampler or CompactBsdf has it; one at a time by BatchSampler; in batches.
+enum class Form { plain, lanes, batch };
+constexpr std::pair<Form, const char*> forms[] = {{Form::plain, ""}, {Form::lanes, "_lanes"}, {Form::batch, "_batch"}};
+template <class S>
+void look_up(benchmark::State& state, Form form, Call call, const S& sampler) {
+  if (form == Form::plain) one_by_one(state, call, sampler);
+  if (form == Form::lanes) one_by_one(state, call, BatchSampler(sampler));
+  if (form == Form::batch) in_batches(state, call, sampler);
+}
+
 /// Backed by the file of RGL that rgl_sample() has, with the stack that is built for it.
-void rgl_backed(benchmark::State& state, bool batch) {
+void rgl_backed(benchmark::State& state, Form form) {
   const auto table = rgl(state);
   if (!table) return;
   static const Sampler sampler(table);
-  batch ? in_batches(state, Call::sample, sampler) : one_by_one(state, Call::sample, sampler);
+  look_up(state, form, Call::sample, sampler);
 }
 /// What `gonio convert` makes of it.
-void rgl_compact(benchmark::State& state, bool batch) {
+void rgl_compact(benchmark::State& state, Form form) {
   const auto table = rgl(state);
   if (!table) return;
   static const CompactBsdf sampler = fit_compact(*table).best().bsdf();
-  batch ? in_batches(state, Call::sample, sampler) : one_by_one(state, Call::sample, sampler);
+  look_up(state, form, Call::sample, sampler);
 }
 /// A displacement stack with colours of its own.
-void rgl_contained(benchmark::State& state, bool batch) {
+void rgl_contained(benchmark::State& state, Form form) {
   const auto table = rgl(state);
   if (!table) return;
   static const CompactBsdf sampler = [&] {
@@ -159,7 +169,7 @@ void rgl_contained(benchmark::State& state, bool batch) {
     return CompactBsdf(grid, Interpolation::displacement, Storage::float32,
                        Colour::from_table(*table, direction_map(stack), stack.theta_i(), 8));
   }();
-  batch ? in_batches(state, Call::sample, sampler) : one_by_one(state, Call::sample, sampler);
+  look_up(state, form, Call::sample, sampler);
 }
 
 const int registered = [] {
@@ -167,18 +177,16 @@ const int registered = [] {
        {std::pair{Interpolation::displacement, Chart::outgoing}, {Interpolation::blend, Chart::half}}) {
     const std::string name = std::string("/") + to_string(interpolation) + "/" + to_string(chart);
     for (const auto& [call, verb] : {std::pair{Call::sample, "sample"}, {Call::pdf, "pdf"}, {Call::eval, "eval"}})
-      for (const bool batch : {false, true})
-        benchmark::RegisterBenchmark((std::string("rgb_") + verb + (batch ? "_batch" : "") + name).c_str(),
-                                     [=, i = interpolation, c = chart, o = call](benchmark::State& state) {
-                                       const CompactBsdf sampler = coloured(i, c);
-                                       batch ? in_batches(state, o, sampler) : one_by_one(state, o, sampler);
+      for (const auto& [form, end] : forms)
+        benchmark::RegisterBenchmark((std::string("rgb_") + verb + end + name).c_str(),
+                                     [i = interpolation, c = chart, o = call, f = form](benchmark::State& state) {
+                                       look_up(state, f, o, coloured(i, c));
                                      });
   }
-  for (const bool batch : {false, true}) {
-    const std::string end = batch ? "_batch" : "";
-    benchmark::RegisterBenchmark(("rgl_stack_sample" + end).c_str(), rgl_backed, batch);
-    benchmark::RegisterBenchmark(("rgl_compact_sample" + end).c_str(), rgl_compact, batch);
-    benchmark::RegisterBenchmark(("rgl_contained_sample" + end).c_str(), rgl_contained, batch);
+  for (const auto& [form, end] : forms) {
+    benchmark::RegisterBenchmark((std::string("rgl_stack_sample") + end).c_str(), rgl_backed, form);
+    benchmark::RegisterBenchmark((std::string("rgl_compact_sample") + end).c_str(), rgl_compact, form);
+    benchmark::RegisterBenchmark((std::string("rgl_contained_sample") + end).c_str(), rgl_contained, form);
   }
   return 0;
 }();

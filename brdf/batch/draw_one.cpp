@@ -1,0 +1,178 @@
+#include <gonio/brdf/batch/batch_sampler.h>
+#include <gonio/brdf/batch/one_lane.h>
+#include <gonio/mapping/monotone_root.h>
+
+#define GONIO_LANE_CAP 2
+// Instruction sets that bring these kernels nothing over the next lower one.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "gonio/brdf/batch/draw_one.cpp"
+#include <hwy/foreach_target.h>
+
+#include <gonio/brdf/batch/cells-inl.h>
+#include <gonio/brdf/batch/frame-inl.h>
+#include <gonio/brdf/batch/search-inl.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace gonio {
+namespace HWY_NAMESPACE {
+namespace {
+
+#if HWY_TARGET != HWY_SCALAR
+// One draw at a time. The two diagrams of a displacement are the two lanes of a vector: a draw is one long chain, and the shorter its
+// code the more of the next draw is under way.
+
+/// The diagram before an incident angle, and how far the angle is from there to the next: Stack::Place.
+struct PlaceOfOne {
+  std::ptrdiff_t k;
+  float alpha;
+};
+HWY_INLINE PlaceOfOne place_of_one(const BatchAngles& angles, const Incidence& i) {
+  if (angles.count == 1) return {0, 0};
+  const float r = hn::GetLane(i.r);
+  int k = angles.guide[static_cast<std::size_t>(std::min(static_cast<int>(r * BatchAngles::guide_parts), BatchAngles::guide_parts - 1))];
+  for (int step = 0; step < angles.guide_steps; ++step) k = std::min(k + (angles.radii[k + 1] < r), angles.count - 2);
+  const V first = set(angles.values[k]), last = set(angles.values[k + 1]);
+  return {k, hn::GetLane(clamp01(hn::Div(hn::Sub(i.theta, first), hn::Sub(last, first))))};
+}
+
+/// Colour::eval(): four floats.
+HWY_INLINE void colour_of_one(const BatchColour& colour, const PlaceOfOne& place, float u, float v, float* to) {
+  const V side = set(static_cast<float>(colour.side)), half = set(0.5f);
+  const V across = hn::MulSub(set(u), side, half), along = hn::MulSub(hn::Abs(hn::Sub(set(v), half)), side, half);
+  const float x = hn::GetLane(hn::Min(hn::Max(across, zero()), hn::Sub(side, set(1))));
+  const float y = hn::GetLane(hn::Min(hn::Max(along, zero()), hn::MulSub(side, half, set(1))));
+  const int i = std::min(static_cast<int>(x), colour.side - 2), j = std::min(static_cast<int>(y), colour.last_row);
+  const std::ptrdiff_t cell = place.k * colour.layer + j * colour.side + i;
+  mix_cells(colour, colour.values.data() + 4 * cell, x - static_cast<float>(i), y - static_cast<float>(j), place.alpha, to);
+}
+
+/// Numbers of two diagrams, as lanes; of their first lanes, of their second ones.
+HWY_INLINE V lanes(float x0, float x1) { return hn::InterleaveLower(D(), set(x0), set(x1)); }
+HWY_INLINE V first_lanes(V x0, V x1) { return hn::InterleaveLower(D(), x0, x1); }
+HWY_INLINE V second_lanes(V x0, V x1) { return hn::InterleaveUpper(D(), x0, x1); }
+HWY_INLINE float second_lane(V x) { return hn::ExtractLane(x, 1); }
+
+/// Where a draw falls in one or two diagrams.
+struct InDiagrams {
+  V mass, phi, r, pdf;
+};
+
+/// Diagram::meridian_at() and parallel_at(), the mass before the meridian being `target`; of the first source alone, or of both.
+template <bool both, class Source>
+HWY_INLINE InDiagrams draw_maps(const BatchLayout& layout, const Source& source0, const Source& source1, V target, V v) {
+  constexpr std::ptrdiff_t cells = BatchLayout::group, floats = BatchLayout::parallel_group;
+  struct Sector {
+    std::ptrdiff_t index;
+    V first, last;  // phi and mass of its meridians
+    float below;
+  };
+  const auto sector = [&](const Source& source) GONIO_INLINED {
+    const float before = hn::GetLane(target);
+    const std::ptrdiff_t g = count_below<true>(source.row(layout.before_meridians), 0, layout.across - 1, before);
+    const auto group = source.row(layout.meridian_groups + g * BatchLayout::meridian_group);
+    const std::ptrdiff_t i = find_in_group(group, before);
+    return Sector{g * cells + i, group.mixed(D(), cells + 1 + 2 * i), group.mixed(D(), cells + 3 + 2 * i), group.at(i)};
+  };
+  const Sector s0 = sector(source0), s1 = both ? sector(source1) : s0;
+  const V phi0 = first_lanes(s0.first, s1.first), m0 = second_lanes(s0.first, s1.first);
+  const V width = hn::Sub(first_lanes(s0.last, s1.last), phi0), m1 = second_lanes(s0.last, s1.last);
+  const V a = invert_azimuth(width, m0, m1, hn::Sub(target, lanes(s0.below, s1.below))), mass = mix(a, m0, m1);
+
+  struct Ring {
+    V r, density;  // of its parallels
+    float below;
+  };
+  const V next = hn::Mul(v, mass), b = hn::Sub(set(1), a);
+  const auto ring = [&](const Source& source, std::ptrdiff_t i, float b_of, float a_of, float before) GONIO_INLINED {
+    const auto groups = source.row(layout.before_parallels + i * layout.before_row, layout.before_row, b_of, a_of);
+    const std::ptrdiff_t g = count_below<true>(groups, 0, layout.along - 1, before);
+    const auto group = source.row(layout.parallel_groups + (i * layout.along + g) * floats, layout.along * floats, b_of, a_of);
+    const std::ptrdiff_t j = find_in_group(group, before);
+    return Ring{Row{source.block + layout.r}.mixed(D(), g * cells + j), group.mixed(D(), cells + j), group.at(j)};
+  };
+  const Ring r0 = ring(source0, s0.index, hn::GetLane(b), hn::GetLane(a), hn::GetLane(next));
+  const Ring r1 = both ? ring(source1, s1.index, second_lane(b), second_lane(a), second_lane(next)) : r0;
+  Cell c{first_lanes(r0.r, r1.r), zero(), first_lanes(r0.density, r1.density), second_lanes(r0.density, r1.density)};
+  c.h = hn::Sub(second_lanes(r0.r, r1.r), c.r0);
+  const V s = c.invert(hn::Sub(next, lanes(r0.below, r1.below)));
+  return {mass, hn::MulAdd(a, width, phi0), hn::MulAdd(s, c.h, c.r0), c.density(s)};
+}
+
+/// Displacement::sample().
+HWY_INLINE InDiagrams draw_displaced(const BatchLayout& layout, const float* block, float alpha, V target, V v) {
+  const OneSource first{block}, second{block + layout.stride};
+  v = hn::Max(v, set(1.1920929e-7f * 1.1920929e-7f));
+  const InDiagrams x = draw_maps<true>(layout, first, second, target, v);
+  const auto other = [](V lane) HWY_ATTR { return hn::Reverse2(D(), lane); };
+  const InDiagrams y{other(x.mass), other(x.phi), other(x.r), other(x.pdf)};
+  const V w1 = set(alpha), w0 = hn::Sub(set(1), w1), r = hn::MulAdd(w0, x.r, hn::Mul(w1, y.r));
+  const V density = displaced_density(w0, w1, set(layout.whole_mass()), {x.mass, x.r, x.pdf}, {y.mass, y.r, y.pdf}, r);
+  return {x.mass, hn::MulAdd(w0, x.phi, hn::Mul(w1, y.phi)), r, density};
+}
+
+/// BatchSampler::sample(), of direction and pdf alone where there is no colour.
+bool draw(const BatchLayout& layout, const BatchColour* colour, const glm::vec3& wi, const glm::vec2& u, BsdfSample& out) {
+  if (!(wi.z > 0)) return false;
+  const Frame frame({set(wi.x), set(wi.y), set(wi.z)});
+  const PlaceOfOne place = place_of_one(layout.angles, frame.i);
+  if (colour != nullptr) {
+    float rgb[4];
+    colour_of_one(*colour, colour->same_angles ? place : place_of_one(colour->angles, frame.i), u.x, u.y, rgb);
+    out.weight = {rgb[0], rgb[1], rgb[2]};
+  }
+  const Folded uv = square_to_diagram(set(u.x), set(u.y), layout.half_azimuth);
+  const V target = hn::Mul(uv.u, set(layout.whole_mass()));
+  const float* block = layout.values() + place.k * layout.stride;
+  InDiagrams at;
+  if (layout.angles.count > 1 && layout.interpolation == Interpolation::displacement) {
+    at = draw_displaced(layout, block, place.alpha, target, uv.v);
+  } else if (layout.angles.count > 1 && layout.interpolation == Interpolation::blend) {
+    const TwoSources source{block, layout.stride, 1 - place.alpha, place.alpha};
+    at = draw_maps<false>(layout, source, source, target, uv.v);
+  } else {
+    const OneSource source{block + (layout.angles.count > 1 && !(place.alpha < 0.5f) ? layout.stride : 0)};
+    at = draw_maps<false>(layout, source, source, target, uv.v);
+  }
+  const V r = hn::Min(at.r, set(1 - 0.5f * 1.1920929e-7f));
+  SinCos phi = sin_cos(at.phi);
+  phi.sin = hn::IfThenElse(uv.mirrored, hn::Neg(phi.sin), phi.sin);
+  Direction wo;
+  if (layout.half_chart) {
+    const HalfChart::Image image = HalfChart(frame.i.theta).direction(r, phi);
+    wo = image.wo, at.pdf = hn::Div(at.pdf, image.jacobian);
+  } else {
+    wo = to_hemisphere(r, phi);
+  }
+  wo = to_surface(frame.cos_phi, frame.sin_phi, wo);
+  out.wo = {hn::GetLane(wo.x), hn::GetLane(wo.y), hn::GetLane(wo.z)}, out.pdf = hn::GetLane(at.pdf);
+  return out.pdf > 0 && out.wo.z > 0;
+}
+#else
+bool draw(const BatchLayout& layout, const BatchColour* colour, const glm::vec3& wi, const glm::vec2& u, BsdfSample& out) {
+  return draw_in_one_lane(layout, colour, wi, u, out);
+}
+#endif
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace gonio
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace gonio {
+namespace {
+
+HWY_EXPORT(draw);
+
+}  // namespace
+
+std::optional<BsdfSample> BatchSampler::sample(const glm::vec3& wi, const glm::vec2& u) const noexcept {
+  BsdfSample s;
+  if (!HWY_DYNAMIC_DISPATCH(draw)(layout_, table_ ? nullptr : &colour_, wi, u, s)) return std::nullopt;
+  if (table_) s.weight = table_->eval(wi, s.wo) * (s.wo.z / s.pdf);
+  return s;
+}
+
+}  // namespace gonio
+#endif
