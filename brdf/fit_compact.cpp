@@ -133,7 +133,7 @@ class Fitter {
   /// For tables that have no stack of that variance within the budget. Adds to `tried`.
   std::size_t least_variance_within_budget(double max_variance) {
     const std::size_t before = tried.size();
-    for (double tolerance = max_variance; tolerance < coarsest_tolerance; tolerance *= 4) {
+    for (double tolerance = max_variance; tolerance < coarsest_tolerance; tolerance *= 2) {
       for (const Chart chart : options_.candidates)
         attempt(chart, tolerance, options_.budget, colour_error(max_variance), true);
       // Once all angles that are wanted fit, more tolerance makes it worse.
