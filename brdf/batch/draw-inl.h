@@ -32,43 +32,59 @@ struct MapBlock {
 
 // A search has two steps, the group and the cell, in loops of their own: what the second one reads is on its way by then.
 
-template <class Source, std::size_t size>
-HWY_INLINE void find_meridian_group(const Parts& parts, const Source& source, MapBlock<size>& map, std::size_t k) {
-  const std::ptrdiff_t g = count_below<true>(source.row(parts.before_meridians), 0, parts.across - 1, map.target[k]);
-  source.row(parts.meridian_groups + g * BatchLayout::meridian_group).prefetch();
-  map.group[k] = static_cast<int>(g);
+template <std::size_t size, class SourceOf>
+HWY_INLINE void find_meridian_groups(const BatchLayout& layout, std::size_t count, MapBlock<size>& map, const SourceOf& source_of) {
+  const std::ptrdiff_t before = layout.before_meridians, groups = layout.meridian_groups, across = layout.across;
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto source = source_of(k);
+    const std::ptrdiff_t g = count_below<true>(source.row(before), 0, across - 1, map.target[k]);
+    source.row(groups + g * BatchLayout::meridian_group).prefetch();
+    map.group[k] = static_cast<int>(g);
+  }
 }
 
-template <class Source, std::size_t size>
-HWY_INLINE void find_meridian(const Parts& parts, const Source& source, MapBlock<size>& map, std::size_t k) {
+template <std::size_t size, class SourceOf>
+HWY_INLINE void find_meridians(const BatchLayout& layout, std::size_t count, MapBlock<size>& map, const SourceOf& source_of) {
   constexpr std::ptrdiff_t cells = BatchLayout::group;
-  const std::ptrdiff_t g = map.group[k];
-  const auto group = source.row(parts.meridian_groups + g * BatchLayout::meridian_group);
-  const std::ptrdiff_t i = find_in_group(group, map.target[k]);
-  copy_values<4>(group, cells + 1 + 2 * i, map.cell + 4 * k);
-  map.below[k] = group.at(i), map.meridian[k] = static_cast<int>(g * cells + i);
-  source.row(parts.before_parallels + (g * cells + i) * parts.before_row).prefetch();
+  const std::ptrdiff_t groups = layout.meridian_groups, before = layout.before_parallels, before_row = layout.before_row;
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto source = source_of(k);
+    const std::ptrdiff_t g = map.group[k];
+    const auto group = source.row(groups + g * BatchLayout::meridian_group);
+    const std::ptrdiff_t in_group = find_in_group(group, map.target[k]), i = g * cells + in_group;
+    copy_values<4>(group, cells + 1 + 2 * in_group, map.cell + 4 * k);
+    map.below[k] = group.at(in_group), map.meridian[k] = static_cast<int>(i);
+    source.row(before + i * before_row).prefetch();
+  }
 }
 
-template <class Source, std::size_t size>
-HWY_INLINE void find_parallel_group(const Parts& parts, const Source& source, MapBlock<size>& map, std::size_t k) {
-  const std::ptrdiff_t i = map.meridian[k];
-  const auto before = source.row(parts.before_parallels + i * parts.before_row, parts.before_row, map.b[k], map.a[k]);
-  const std::ptrdiff_t g = count_below<true>(before, 0, parts.along - 1, map.target[k]);
+template <std::size_t size, class SourceOf>
+HWY_INLINE void find_parallel_groups(const BatchLayout& layout, std::size_t count, MapBlock<size>& map, const SourceOf& source_of) {
   constexpr std::ptrdiff_t floats = BatchLayout::parallel_group;
-  source.row(parts.parallel_groups + (i * parts.along + g) * floats, parts.along * floats, 0, 0).prefetch();
-  map.group[k] = static_cast<int>(g);
+  const std::ptrdiff_t before = layout.before_parallels, before_row = layout.before_row, groups = layout.parallel_groups, along = layout.along;
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto source = source_of(k);
+    const std::ptrdiff_t i = map.meridian[k];
+    const auto row = source.row(before + i * before_row, before_row, map.b[k], map.a[k]);
+    const std::ptrdiff_t g = i * along + count_below<true>(row, 0, along - 1, map.target[k]);
+    source.row(groups + g * floats, along * floats, 0, 0).prefetch();
+    map.group[k] = static_cast<int>(g);
+  }
 }
 
-template <class Source, std::size_t size>
-HWY_INLINE void find_parallel(const Parts& parts, const Source& source, MapBlock<size>& map, std::size_t k) {
+template <std::size_t size, class SourceOf>
+HWY_INLINE void find_parallels(const BatchLayout& layout, std::size_t count, MapBlock<size>& map, const SourceOf& source_of) {
   constexpr std::ptrdiff_t cells = BatchLayout::group, floats = BatchLayout::parallel_group;
-  const std::ptrdiff_t g = map.group[k], first = map.meridian[k] * parts.along + g;
-  const auto group = source.row(parts.parallel_groups + first * floats, parts.along * floats, map.b[k], map.a[k]);
-  const std::ptrdiff_t j = find_in_group(group, map.target[k]);
-  copy_values<2>(Row{source.block + parts.r}, g * cells + j, map.cell + 4 * k);
-  copy_values<2>(group, cells + j, map.cell + 4 * k + 2);
-  map.below[k] = group.at(j);
+  const std::ptrdiff_t groups = layout.parallel_groups, along = layout.along, r = layout.r;
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto source = source_of(k);
+    const std::ptrdiff_t g = map.group[k];
+    const auto group = source.row(groups + g * floats, along * floats, map.b[k], map.a[k]);
+    const std::ptrdiff_t in_group = find_in_group(group, map.target[k]);
+    copy_values<2>(Row{source.block + r}, (g - map.meridian[k] * along) * cells + in_group, map.cell + 4 * k);
+    copy_values<2>(group, cells + in_group, map.cell + 4 * k + 2);
+    map.below[k] = group.at(in_group);
+  }
 }
 
 /// Diagram::meridian_at() and parallel_at() of `count` elements with their `block` and `target`, the mass before the meridian;
@@ -76,9 +92,8 @@ HWY_INLINE void find_parallel(const Parts& parts, const Source& source, MapBlock
 template <std::size_t size, class SourceOf, class V0>
 HWY_INLINE void draw_map(const BatchLayout& layout, std::size_t count, MapBlock<size>& map, const SourceOf& source_of, const V0& v) {
   const D d;
-  const Parts parts(layout);
-  for (std::size_t k = 0; k < count; ++k) find_meridian_group(parts, source_of(k), map, k);
-  for (std::size_t k = 0; k < count; ++k) find_meridian(parts, source_of(k), map, k);
+  find_meridian_groups(layout, count, map, source_of);
+  find_meridians(layout, count, map, source_of);
   for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
     V phi0, phi1, m0, m1;
     load4(map.cell + 4 * k, phi0, m0, phi1, m1);
@@ -88,8 +103,8 @@ HWY_INLINE void draw_map(const BatchLayout& layout, std::size_t count, MapBlock<
     hn::Store(hn::MulAdd(a, width, phi0), d, map.phi + k);
     hn::Store(hn::Mul(v(k), mass), d, map.target + k);
   }
-  for (std::size_t k = 0; k < count; ++k) find_parallel_group(parts, source_of(k), map, k);
-  for (std::size_t k = 0; k < count; ++k) find_parallel(parts, source_of(k), map, k);
+  find_parallel_groups(layout, count, map, source_of);
+  find_parallels(layout, count, map, source_of);
   for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
     Cell c;
     V r1;

@@ -77,16 +77,6 @@ HWY_INLINE std::ptrdiff_t find_in_group(const Values& group, float target) {
   return count_below<false>(group, 1, BatchLayout::group - 1, target);
 }
 
-/// Of BatchLayout.
-struct Parts {
-  std::ptrdiff_t r, before_meridians, before_parallels, meridian_groups, parallel_groups, across, along, before_row;
-
-  explicit HWY_INLINE Parts(const BatchLayout& layout)
-      : r(layout.r), before_meridians(layout.before_meridians), before_parallels(layout.before_parallels),
-        meridian_groups(layout.meridian_groups), parallel_groups(layout.parallel_groups), across(layout.across), along(layout.along),
-        before_row(layout.before_row) {}
-};
-
 /// One diagram.
 struct OneSource {
   const float* block;
