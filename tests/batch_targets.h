@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-// Those that the library is compiled without.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#include <gonio/brdf/batch/targets.h>
+
 #include <hwy/highway.h>
 
 #include <cstdint>

@@ -1,8 +1,7 @@
 #include <gonio/brdf/batch/batch_stack.h>
+#include <gonio/brdf/batch/targets.h>
 #include <gonio/mapping/monotone_root.h>
 
-// Instruction sets that bring these kernels nothing over the next lower one.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "gonio/brdf/batch/batch_stack.cpp"
 #include <hwy/foreach_target.h>

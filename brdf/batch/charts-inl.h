@@ -21,6 +21,8 @@ struct Direction {
 struct Folded {
   V u, v;
   M mirrored;
+
+  HWY_INLINE V sign() const { return hn::IfThenElse(mirrored, set(-1), set(1)); }  // of phi
 };
 HWY_INLINE Folded square_to_diagram(V u, V v, bool half) {
   const V x = hn::Sub(hn::Add(u, u), set(1)), y = hn::Sub(hn::Add(v, v), set(1));
@@ -144,6 +146,20 @@ struct HalfChart {
             hn::Div(hn::Mul(hn::Mul(set(2), length), scale), hn::Mul(d, d))};
   }
 };
+
+/// from_disk() of folded_disk.h: the direction of a draw of a diagram.
+struct Drawn {
+  Direction wo;
+  V pdf;
+};
+HWY_INLINE Drawn from_disk(const BatchLayout& layout, V theta_i, V r, V angle, V sign, V pdf) {
+  r = hn::Min(r, set(1 - 0.5f * 1.1920929e-7f));
+  SinCos phi = sin_cos(angle);
+  phi.sin = hn::Mul(phi.sin, sign);
+  if (!layout.half_chart) return {to_hemisphere(r, phi), pdf};
+  const HalfChart::Image image = HalfChart(theta_i).direction(r, phi);
+  return {image.wo, hn::Div(pdf, image.jacobian)};
+}
 
 }  // namespace GONIO_LANES
 }  // namespace HWY_NAMESPACE

@@ -14,8 +14,8 @@ namespace gonio {
 namespace HWY_NAMESPACE {
 inline namespace GONIO_LANES {
 
-/// Colour::eval() of `count` elements, at most a block of whole vectors, from their places among its angles. Each loads its eight cells as whole RGB triples and mixes
-/// them: a third of the loads that gathers of single channels would make.
+/// Colour::eval() of `count` elements, at most a block of whole vectors, from their places among its angles. Each loads its eight cells
+/// as whole RGB triples and mixes them: a third of the loads that gathers of single channels would make.
 HWY_INLINE void find_colours(const BatchColour& colour, std::size_t count, const Places& places, const float* u, const float* v,
                              float* red, float* green, float* blue) {
   const D d;

@@ -144,7 +144,7 @@ HWY_INLINE void draw_displacement(const BatchLayout& layout, std::size_t count, 
   const D d;
   const DI di;
   MapBlock<2 * block_size> map;
-  const V smallest = set(DisplacementLanes::smallest_v), whole = set(layout.whole_mass());
+  const V smallest = set(smallest_v), whole = set(layout.whole_mass());
   for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
     const V target = hn::Load(d, disk.target + k);
     hn::Store(target, d, map.target + k), hn::Store(target, d, map.target + count + k);
@@ -174,15 +174,10 @@ HWY_INLINE void draw_stack(const BatchLayout& layout, std::size_t count, const P
   DiskBlock disk;
   HWY_ALIGN float sign[block_size];  // of phi
   for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
-    VI block = hn::Mul(hn::Load(di, places.k + k), set_int(layout.stride));
-    if (layout.interpolation == Interpolation::nearest && layout.angles.count > 1) {
-      const auto first_is_closer = hn::RebindMask(di, hn::Lt(hn::Load(d, places.alpha + k), set(0.5f)));
-      block = hn::IfThenElse(first_is_closer, block, hn::Add(block, set_int(layout.stride)));
-    }
-    hn::Store(block, di, disk.block + k);
+    hn::Store(block_of(layout, {hn::Load(di, places.k + k), hn::Load(d, places.alpha + k)}), di, disk.block + k);
     const Folded uv = square_to_diagram(hn::LoadU(d, u + k), hn::LoadU(d, v + k), layout.half_azimuth);
     hn::Store(hn::Mul(uv.u, set(layout.whole_mass())), d, disk.target + k), hn::Store(uv.v, d, disk.v + k);
-    hn::Store(hn::IfThenElse(uv.mirrored, set(-1), set(1)), d, sign + k);
+    hn::Store(uv.sign(), d, sign + k);
   }
   if (layout.angles.count == 1 || layout.interpolation == Interpolation::nearest) {
     draw_single<false>(layout, count, places.alpha, disk);
@@ -192,18 +187,9 @@ HWY_INLINE void draw_stack(const BatchLayout& layout, std::size_t count, const P
     draw_displacement(layout, count, places.alpha, disk);
   }
   for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
-    const V r = hn::Min(hn::Load(d, disk.r + k), set(1 - 0.5f * 1.1920929e-7f));
-    SinCos phi = sin_cos(hn::Load(d, disk.phi + k));
-    phi.sin = hn::Mul(phi.sin, hn::Load(d, sign + k));
-    V density = hn::Load(d, disk.pdf + k);
-    Direction wo;
-    if (layout.half_chart) {
-      const HalfChart::Image image = HalfChart(hn::LoadU(d, theta_i + k)).direction(r, phi);
-      wo = image.wo, density = hn::Div(density, image.jacobian);
-    } else {
-      wo = to_hemisphere(r, phi);
-    }
-    hn::StoreU(wo.x, d, x + k), hn::StoreU(wo.y, d, y + k), hn::StoreU(wo.z, d, z + k), hn::StoreU(density, d, pdf + k);
+    const Drawn at = from_disk(layout, hn::LoadU(d, theta_i + k), hn::Load(d, disk.r + k), hn::Load(d, disk.phi + k), hn::Load(d, sign + k),
+                               hn::Load(d, disk.pdf + k));
+    hn::StoreU(at.wo.x, d, x + k), hn::StoreU(at.wo.y, d, y + k), hn::StoreU(at.wo.z, d, z + k), hn::StoreU(at.pdf, d, pdf + k);
   }
 }
 

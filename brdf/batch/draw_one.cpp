@@ -1,10 +1,9 @@
 #include <gonio/brdf/batch/batch_sampler.h>
 #include <gonio/brdf/batch/one_lane.h>
+#include <gonio/brdf/batch/targets.h>
 #include <gonio/mapping/monotone_root.h>
 
 #define GONIO_LANE_CAP 2
-// Instruction sets that bring these kernels nothing over the next lower one.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "gonio/brdf/batch/draw_one.cpp"
 #include <hwy/foreach_target.h>
@@ -102,7 +101,7 @@ HWY_INLINE InDiagrams draw_maps(const BatchLayout& layout, const Source& source0
 /// Displacement::sample().
 HWY_INLINE InDiagrams draw_displaced(const BatchLayout& layout, const float* block, float alpha, V target, V v) {
   const OneSource first{block}, second{block + layout.stride};
-  v = hn::Max(v, set(1.1920929e-7f * 1.1920929e-7f));
+  v = hn::Max(v, set(smallest_v));
   const InDiagrams x = draw_maps<true>(layout, first, second, target, v);
   const auto other = [](V lane) HWY_ATTR { return hn::Reverse2(D(), lane); };
   const InDiagrams y{other(x.mass), other(x.phi), other(x.r), other(x.pdf)};
@@ -134,18 +133,9 @@ bool draw(const BatchLayout& layout, const BatchColour* colour, const glm::vec3&
     const OneSource source{block + (layout.angles.count > 1 && !(place.alpha < 0.5f) ? layout.stride : 0)};
     at = draw_maps<false>(layout, source, source, target, uv.v);
   }
-  const V r = hn::Min(at.r, set(1 - 0.5f * 1.1920929e-7f));
-  SinCos phi = sin_cos(at.phi);
-  phi.sin = hn::IfThenElse(uv.mirrored, hn::Neg(phi.sin), phi.sin);
-  Direction wo;
-  if (layout.half_chart) {
-    const HalfChart::Image image = HalfChart(frame.i.theta).direction(r, phi);
-    wo = image.wo, at.pdf = hn::Div(at.pdf, image.jacobian);
-  } else {
-    wo = to_hemisphere(r, phi);
-  }
-  wo = to_surface(frame.cos_phi, frame.sin_phi, wo);
-  out.wo = {hn::GetLane(wo.x), hn::GetLane(wo.y), hn::GetLane(wo.z)}, out.pdf = hn::GetLane(at.pdf);
+  const Drawn drawn = from_disk(layout, frame.i.theta, at.r, at.phi, uv.sign(), at.pdf);
+  const Direction wo = to_surface(frame.cos_phi, frame.sin_phi, drawn.wo);
+  out.wo = {hn::GetLane(wo.x), hn::GetLane(wo.y), hn::GetLane(wo.z)}, out.pdf = hn::GetLane(drawn.pdf);
   return out.pdf > 0 && out.wo.z > 0;
 }
 #else

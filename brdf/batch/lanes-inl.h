@@ -210,6 +210,8 @@ HWY_INLINE V invert_azimuth(V width, V m0, V m1, V inside) {
   return hn::Min(quotient(x, hn::Add(n0, root)), set(1));
 }
 
+/// Displacement::smallest_v.
+constexpr float smallest_v = 1.1920929e-7f * 1.1920929e-7f;
 /// A position in one of two diagrams: the mass along its meridian, and the density there.
 struct Displaced {
   V mass, r, pdf;

@@ -137,7 +137,7 @@ struct DisplacementLanes {
         w0(hn::Min(alpha, hn::Sub(set(1), alpha))),
         w1(hn::Sub(set(1), w0)) {}
 
-  static constexpr float epsilon = 1.1920929e-7f, smallest_v = epsilon * epsilon;
+  static constexpr float epsilon = 1.1920929e-7f;
   HWY_INLINE float whole_angle() const { return d0.layout.half_azimuth ? pi<float> : 2 * pi<float>; }
 
   /// Displacement::Across.

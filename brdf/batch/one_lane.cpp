@@ -1,10 +1,9 @@
 #include <gonio/brdf/batch/batch_sampler.h>
 #include <gonio/brdf/batch/one_lane.h>
+#include <gonio/brdf/batch/targets.h>
 #include <gonio/mapping/monotone_root.h>
 
 #define GONIO_LANE_CAP 1
-// Instruction sets that bring these kernels nothing over the next lower one.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "gonio/brdf/batch/one_lane.cpp"
 #include <hwy/foreach_target.h>

@@ -56,16 +56,19 @@ struct Places {
   }
 };
 
+/// The block of the diagram before an incident angle, or, for `nearest`, of the closer one.
+HWY_INLINE VI block_of(const BatchLayout& layout, const Place& place) {
+  const VI block = hn::Mul(place.k, set_int(layout.stride));
+  if (layout.interpolation != Interpolation::nearest) return block;
+  const auto first_is_closer = hn::RebindMask(DI(), hn::Lt(place.alpha, set(0.5f)));
+  return hn::IfThenElse(first_is_closer, block, hn::Add(block, set_int(layout.stride)));
+}
+
 /// Calls maps(lanes) with what serves a place: one diagram, a blend or a displacement.
 template <class Call>
 HWY_INLINE auto with_lanes(const BatchLayout& layout, const Place& place, const Call& call) {
-  const VI block = hn::Mul(place.k, set_int(layout.stride));
-  if (layout.angles.count == 1) return call(OneDiagram{layout, {layout.values()}, block});
-  if (layout.interpolation == Interpolation::nearest) {
-    const VI next = hn::Add(block, set_int(layout.stride));
-    const auto first_is_closer = hn::RebindMask(DI(), hn::Lt(place.alpha, set(0.5f)));
-    return call(OneDiagram{layout, {layout.values()}, hn::IfThenElse(first_is_closer, block, next)});
-  }
+  const VI block = block_of(layout, place);
+  if (layout.angles.count == 1 || layout.interpolation == Interpolation::nearest) return call(OneDiagram{layout, {layout.values()}, block});
   if (layout.interpolation == Interpolation::blend)
     return call(DiagramLanes<Blended>{layout, {layout.values(), layout.stride, place.alpha}, block});
   return call(DisplacementLanes(layout, block, place.alpha));
