@@ -43,7 +43,8 @@ double map_relvar(const DiskDensity& density, const Map& map) {
     for (int y = 0; y < side; ++y) {
       // A fixed lattice inside the cells, so that no row or column of samples shares a coordinate.
       const double jitter = (x * 19 + y * 27) % side + 0.5;
-      const auto s = map.sample((x + jitter / side) / side, (y + (side - jitter) / side) / side);
+      const double v = (y + (side - jitter) / side) / side;
+      const auto s = map.sample((x + jitter / side) / side, v, 1 - v);
       const double weight = s.pdf > 0 ? density(s.at) / s.pdf : 0;
       sum += weight;
       sum2 += weight * weight;

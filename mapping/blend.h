@@ -20,8 +20,8 @@ class Blend {
   Blend(const Diagram<T>& first, const Diagram<T>& second, T alpha) noexcept
       : d0_(first), d1_(second), w0_(1 - alpha), w1_(alpha) {}
 
-  /// (u, v) in [0, 1]^2 to the disk.
-  PolarSample<T> sample(T u, T v) const noexcept {
+  /// (u, v) in [0, 1]^2 to the disk. @param rest 1 - v, see Diagram::parallel_at().
+  PolarSample<T> sample(T u, T v, T rest) const noexcept {
     const int count = d0_.meridians_;
     const T *c0 = d0_.cumulative_phi(), *c1 = d1_.cumulative_phi();
     const T angle = std::clamp(u, T(0), T(1)) * mix(c0[count - 1], c1[count - 1]);
@@ -32,19 +32,18 @@ class Blend {
     const Rows rows = rows_at(i, a);
 
     const int last = d0_.parallels_ - 1;
-    const T target = std::clamp(v, T(0), T(1)) * rows.cumulative(last);
+    const T mass = rows.cumulative(last), target = std::clamp(v, T(0), T(1)) * mass;
     const int j = find_cell_of([&](int k) { return rows.cumulative(k); }, last + 1, target);
-    const RadialCell<T> cell = radial_cell(rows, j);
-    const T mass = cell.mass(1), inside = target - rows.cumulative(j);
-    const T s = inside > 0 && mass > 0 ? cell.invert(std::min(inside / mass, T(1))) : T(0);
-    return {{cell.r0 + s * cell.h, phi[i] + a * across.width}, cell.density(s)};
+    const auto p = RadialPlace<T>::of(radial_cell(rows, j), d0_.r()[j + 1], target - rows.cumulative(j), rest * mass,
+                                      ends_mass(rows.cumulative(j + 1), mass)).within(least_gap<T>);
+    return {{p.r(), phi[i] + a * across.width, p.gap()}, p.density()};
   }
 
   /// The density at a position: one bilinear look-up of the blend.
   T pdf(Polar<T> at) const noexcept {
     const auto m = d0_.meridian_through(at.phi);
-    const RadialCell<T> cell = radial_cell(rows_at(m.i, m.a), find_cell(d0_.r(), d0_.parallels_, at.r));
-    return cell.density(std::clamp((at.r - cell.r0) / cell.h, T(0), T(1)));
+    const int j = find_cell(d0_.r(), d0_.parallels_, at.r);
+    return radial_cell(rows_at(m.i, m.a), j).density_at(at.r, at.gap, 1 - d0_.r()[j + 1]);
   }
 
   /// The inverse of sample(), exists everywhere; its pdf may be 0.
@@ -59,7 +58,8 @@ class Blend {
     const RadialCell<T> cell = radial_cell(rows, j);
     const T s = std::clamp((at.r - cell.r0) / cell.h, T(0), T(1));
     const T v = mass > 0 ? std::min((rows.cumulative(j) + cell.mass(s)) / mass, T(1)) : T(0);
-    return {std::min((below + inside) / mix(d0_.mass(), d1_.mass()), T(1)), v, cell.density(s)};
+    return {std::min((below + inside) / mix(d0_.mass(), d1_.mass()), T(1)), v,
+            cell.density_at(at.r, at.gap, 1 - d0_.r()[j + 1])};
   }
 
  private:

@@ -65,7 +65,7 @@ class Diagram {
   };
   /// A position along a meridian, and the pdf [1/sr] there.
   struct Parallel {
-    T r, pdf;
+    T r, pdf, gap = 1 - r;  ///< gap: see Polar
   };
 
   /// M_C forward, eqs. 20-25: the meridian below which the fraction u of the mass lies. The
@@ -76,12 +76,15 @@ class Diagram {
   /// M_C inverse: the u of a meridian.
   T u_of(const Meridian& m) const noexcept;
 
-  /// M_D forward, eqs. 10-19: the radius below which the fraction v of the meridian's mass lies.
-  Parallel parallel_at(const Meridian& m, T v) const noexcept;
+  /// M_D forward, eqs. 10-19: the radius below which the fraction v of the meridian's mass lies. `rest` is 1 - v, to
+  /// as many digits as are known: next to the horizon they decide. The gap is at least `least_gap`.
+  Parallel parallel_at(const Meridian& m, T v, T rest) const noexcept;
+  Parallel parallel_at(const Meridian& m, T v) const noexcept { return parallel_at(m, v, 1 - v); }
   /// M_D inverse: the v of radius r, clamped to [0, 1].
   T v_of(const Meridian& m, T r) const noexcept;
-  /// The pdf [1/sr] on a meridian at radius r, clamped to [0, 1].
-  T pdf(const Meridian& m, T r) const noexcept;
+  /// The pdf [1/sr] on a meridian at radius r, clamped to [0, 1], and its gap.
+  T pdf(const Meridian& m, T r, T gap) const noexcept;
+  T pdf(const Meridian& m, T r) const noexcept { return pdf(m, r, 1 - r); }
 
   /// The mass of the stored azimuth: 1/2 for half diagrams, 1 for full ones, to rounding.
   T mass() const noexcept { return cumulative_phi()[meridians_ - 1]; }
@@ -113,11 +116,19 @@ class Diagram {
   /// U(i, j) of eq. 19: the mass of meridian i up to parallel j.
   const T* cumulative(int i) const noexcept { return density(meridians_ + i); }
   T meridian_mass(int i) const noexcept { return cumulative(i)[parallels_ - 1]; }
+  RadialPlace<T> place_at(const Meridian& m, T v, T rest) const noexcept;
 
   Azimuth azimuth_;
   int meridians_, parallels_;
   std::vector<T> values_;  // phi | cumulative_phi | r | density | cumulative, one block
 };
+
+/// Whether a cell that ends with the mass `below` before its end is the last one with mass of a meridian with `mass`,
+/// to rounding.
+template <class T>
+bool ends_mass(T below, T mass) noexcept {
+  return below >= mass * (1 - 2 * std::numeric_limits<T>::epsilon());
+}
 
 /// The largest i in [0, n - 2] with x(i) < t (0 if there is none), x ascending: the cell that ends at or after t
 /// and, when x is cumulative and t > 0, has mass.
@@ -166,7 +177,7 @@ T Diagram<T>::u_of(const Meridian& m) const noexcept {
 }
 
 template <class T>
-typename Diagram<T>::Parallel Diagram<T>::parallel_at(const Meridian& m, T v) const noexcept {
+RadialPlace<T> Diagram<T>::place_at(const Meridian& m, T v, T rest) const noexcept {
   const T target = std::clamp(v, T(0), T(1)) * m.mass;
   const T *u0 = cumulative(m.i), *u1 = cumulative(m.i + 1);
   const T a = m.a, b = 1 - a;
@@ -174,10 +185,14 @@ typename Diagram<T>::Parallel Diagram<T>::parallel_at(const Meridian& m, T v) co
   const T *d0 = density(m.i), *d1 = density(m.i + 1);
   const RadialCell<T> cell{r()[j], r()[j + 1] - r()[j], b * d0[j] + a * d1[j],
                            b * d0[j + 1] + a * d1[j + 1]};
-  const T cell_mass = cell.mass(1);
-  const T inside = target - (b * cumulative(m.i)[j] + a * cumulative(m.i + 1)[j]);
-  const T s = inside > 0 && cell_mass > 0 ? cell.invert(std::min(inside / cell_mass, T(1))) : T(0);
-  return {cell.r0 + s * cell.h, cell.density(s)};
+  return RadialPlace<T>::of(cell, r()[j + 1], target - (b * u0[j] + a * u1[j]), rest * m.mass,
+                            ends_mass(b * u0[j + 1] + a * u1[j + 1], m.mass));
+}
+
+template <class T>
+typename Diagram<T>::Parallel Diagram<T>::parallel_at(const Meridian& m, T v, T rest) const noexcept {
+  const RadialPlace<T> p = place_at(m, v, rest).within(least_gap<T>);
+  return {p.r(), p.density(), p.gap()};
 }
 
 template <class T>
@@ -193,12 +208,12 @@ T Diagram<T>::v_of(const Meridian& m, T radius) const noexcept {
 }
 
 template <class T>
-T Diagram<T>::pdf(const Meridian& m, T radius) const noexcept {
+T Diagram<T>::pdf(const Meridian& m, T radius, T gap) const noexcept {
   const int j = find_cell(r(), parallels_, radius);
-  const T s = std::clamp((radius - r()[j]) / (r()[j + 1] - r()[j]), T(0), T(1));
   const T *d0 = density(m.i), *d1 = density(m.i + 1);
   const T a = m.a, b = 1 - a;
-  return (1 - s) * (b * d0[j] + a * d1[j]) + s * (b * d0[j + 1] + a * d1[j + 1]);
+  const RadialCell<T> cell{r()[j], r()[j + 1] - r()[j], b * d0[j] + a * d1[j], b * d0[j + 1] + a * d1[j + 1]};
+  return cell.density_at(radius, gap, 1 - r()[j + 1]);
 }
 
 extern template class Diagram<float>;

@@ -21,39 +21,52 @@ class Displacement {
   Displacement(const Diagram<T>& first, const Diagram<T>& second, T alpha) noexcept
       : d0_(first), d1_(second), w0_(1 - alpha), w1_(alpha) {}
 
-  /// (u, v) in [0, 1]^2 to the disk.
-  PolarSample<T> sample(T u, T v) const noexcept {
-    v = std::max(v, smallest_v);
+  /// (u, v) in [0, 1]^2 to the disk. @param rest 1 - v, see Diagram::parallel_at().
+  PolarSample<T> sample(T u, T v, T rest) const noexcept {
+    v = std::max(smallest_v, v);
     const Meridians m{d0_.meridian_at(u), d1_.meridian_at(u)};
-    const Parallel p0 = d0_.parallel_at(m.first, v), p1 = d1_.parallel_at(m.second, v);
-    const T r = w0_ * p0.r + w1_ * p1.r;
-    return {{r, w0_ * m.first.phi + w1_ * m.second.phi}, density(m, p0, p1, r)};
+    const RadialPlace<T> p0 = d0_.place_at(m.first, v, rest), p1 = d1_.place_at(m.second, v, rest);
+    const T r = w0_ * p0.r() + w1_ * p1.r(), gap = w0_ * p0.gap() + w1_ * p1.gap(), phi = w0_ * m.first.phi + w1_ * m.second.phi;
+    if (rest < tail || gap < least_gap<T>) {
+      const Polar<T> at{std::min(r, 1 - least_gap<T>), phi, std::max(gap, least_gap<T>)};
+      return {at, invert(at).pdf};
+    }
+    return {{r, phi, gap}, density(m, {p0.r(), p0.density()}, {p1.r(), p1.density()}, r)};
   }
 
   /// The inverse of sample(): exists everywhere; its pdf is 0 in the gap which a region of zero density leaves.
   ///
   /// The two positions that are interpolated to `at` have the same mass before them in their diagrams. Mass is a
   /// polynomial of the position within a cell, cheaper than its inverse: so the positions are what is searched
-  /// for, by one root search in phi and one in r, and u and v are the masses found.
+  /// for, by one root search in phi and one in r, and u and v are the masses found. In the outer half of the
+  /// hemisphere gaps and the masses beyond are taken instead of radii and the masses before: next to the horizon
+  /// these are the small numbers.
   PolarInverse<T> invert(Polar<T> at) const noexcept {
     Across a0{d0_}, a1{d1_};
     balance(a0, a1, at.phi, d0_.azimuth() == Azimuth::half ? pi<T> : 2 * pi<T>);
     const Meridians m{a0.at, a1.at};
     const T r = std::max(at.r, std::numeric_limits<T>::epsilon());  // the density is a quotient of radii
-    Along b0(d0_, m.first), b1(d1_, m.second);
-    balance(b0, b1, r, T(1));
-    return {mass(a0, a1), mass(b0, b1), density(m, b0.at, b1.at, r)};
+    const bool outer = r * r > T(0.5);
+    Along b0(d0_, m.first, outer), b1(d1_, m.second, outer);
+    balance(b0, b1, outer ? at.gap : r, T(1));
+    const T v = mass(b0, b1);
+    return {mass(a0, a1), outer ? 1 - v : v, density(m, {b0.at.r(), b0.at.density()}, {b1.at.r(), b1.at.density()}, r)};
   }
 
  private:
   using Meridian = typename Diagram<T>::Meridian;
-  using Parallel = typename Diagram<T>::Parallel;
+  struct Parallel {
+    T r, pdf;
+  };
   struct Meridians {
     Meridian first, second;
   };
 
   // Keeps r positive, where the quotient of radii in the density is 0/0 otherwise.
   static constexpr T smallest_v = std::numeric_limits<T>::epsilon() * std::numeric_limits<T>::epsilon();
+  // Of 1 - v. With less mass than that beyond them, the two positions that draws find are hardly those with the same
+  // mass beyond them: sums of masses round. There the pdf of a draw is taken from its direction.
+  static constexpr T tail = 128 * std::numeric_limits<T>::epsilon();
   /// A position between two meridians, and the share of the diagram's mass before it: `below` before the cell,
   /// `inside` from there on; `slope` is its derivative.
   struct Across {
@@ -76,30 +89,32 @@ class Displacement {
     }
   };
 
-  /// The same along a meridian.
+  /// The same along a meridian: from the pole by radii or, `outer`, from the horizon by gaps.
   struct Along {
     const Diagram<T>& d;
     const Meridian& m;
+    bool outer;
     T scale;  // 0 for a meridian without mass
-    Parallel at{0, 0};
-    T below = 0, inside = 0, slope = 0;
-    RadialCell<T> cell{1, -1, 0, 0};
+    RadialPlace<T> at{{0, 0, 0, 0}, 0};
+    T below = 0, inside = 0, slope = 0, first = 1, last = -1;
 
-    Along(const Diagram<T>& diagram, const Meridian& meridian) noexcept
-        : d(diagram), m(meridian), scale(meridian.mass > 0 ? 1 / meridian.mass : T(0)) {}
+    Along(const Diagram<T>& diagram, const Meridian& meridian, bool from_horizon) noexcept
+        : d(diagram), m(meridian), outer(from_horizon), scale(meridian.mass > 0 ? 1 / meridian.mass : T(0)) {}
 
-    void move(T r) noexcept {
-      if (!(r >= cell.r0 && r <= cell.r0 + cell.h)) {
-        const int j = find_cell(d.r(), d.parallels_, r);
-        const T *d0 = d.density(m.i) + j, *d1 = d.density(m.i + 1) + j;
-        const T a = m.a, b = 1 - a;
-        cell = {d.r()[j], d.r()[j + 1] - d.r()[j], b * d0[0] + a * d1[0], b * d0[1] + a * d1[1]};
-        below = (b * d.cumulative(m.i)[j] + a * d.cumulative(m.i + 1)[j]) * scale;
+    void move(T way) noexcept {
+      if (!(way >= first && way <= last)) {
+        const int j = find_cell(d.r(), d.parallels_, outer ? 1 - way : way);
+        const T *d0 = d.density(m.i) + j, *d1 = d.density(m.i + 1) + j, *u0 = d.cumulative(m.i), *u1 = d.cumulative(m.i + 1);
+        const T a = m.a, b = 1 - a, r1 = d.r()[j + 1];
+        const RadialCell<T> cell{d.r()[j], r1 - d.r()[j], b * d0[0] + a * d1[0], b * d0[1] + a * d1[1]};
+        const int n = d.parallels_ - 1;
+        at.cell = outer ? cell.from_end(r1) : cell;
+        below = (outer ? b * (u0[n] - u0[j + 1]) + a * (u1[n] - u1[j + 1]) : b * u0[j] + a * u1[j]) * scale;
+        first = outer ? 1 - r1 : cell.r0, last = outer ? 1 - cell.r0 : r1;
       }
-      const T s = std::clamp((r - cell.r0) / cell.h, T(0), T(1));
-      at = {cell.r0 + s * cell.h, cell.density(s)};
-      inside = cell.mass(s) * scale;
-      slope = 2 * at.r * at.pdf * scale;
+      at.s = std::clamp((way - first) / (last - first), T(0), T(1));
+      inside = std::abs(at.cell.mass(at.s)) * scale;
+      slope = 2 * at.r() * at.density() * scale;
     }
   };
 

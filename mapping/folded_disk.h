@@ -51,6 +51,7 @@ OnDisk<T> to_disk(Chart chart, bool half, T theta_i, const Vec3<T>& wo) noexcept
     const auto point = HalfVectorChart<T>(theta_i).disk(wo);
     d.at = point.at, d.jacobian = point.jacobian;
   }
+  d.at.gap = std::max(least_gap<T>, d.at.gap);
   d.mirrored = half && d.at.phi < 0;
   if (d.at.phi < 0) d.at.phi = half ? -d.at.phi : d.at.phi + 2 * pi<T>;
   return d;
@@ -59,8 +60,6 @@ OnDisk<T> to_disk(Chart chart, bool half, T theta_i, const Vec3<T>& wo) noexcept
 /// The direction of a draw of a diagram.
 template <class T>
 DirectionSample<T> from_disk(Chart chart, T theta_i, PolarSample<T> s, bool mirrored) noexcept {
-  // The horizon itself has no cosine and is no direction of reflection.
-  s.at.r = std::min(s.at.r, 1 - std::numeric_limits<T>::epsilon() / 2);
   s.at.phi = select(mirrored, -s.at.phi, s.at.phi);
   if (chart == Chart::outgoing) return {polar_to_direction(s.at), s.pdf};
   const auto d = HalfVectorChart<T>(theta_i).direction(s.at);

@@ -52,7 +52,7 @@ class HalfVectorChart {
   Direction direction(Polar<T> at) const noexcept {
     const auto [s, c] = sin_cos(at.phi);
     const Meridian h = meridian(c);
-    const T q = at.r * at.r, rest = (1 - at.r) * (1 + at.r);
+    const T q = at.r * at.r, rest = at.gap * (1 + at.r);
     const T d = scale_ * rest + q / h.m;
     // Eq. 1 as norm sin 2 (theta_max - theta_h), the sine of the difference without cancellation: the
     // distance to the horizon keeps its digits.
@@ -82,9 +82,10 @@ class HalfVectorChart {
       const T sin_left = sin2 / std::sqrt(2 * (1 + std::sqrt((1 - sin2) * (1 + sin2))));
       below = sin_left * (sin_max * cos_h + cos_max * (across / length)) / (cos_h + cos_max);
     }
-    const T q = std::min(scale_ * x / (below / m + scale_ * x), T(1));
-    const T d = scale_ * (1 - q) + q / m;
-    return {{std::sqrt(q), select(across > 0, fast_atan2(h.y, h.x), T(0))}, 2 * length * scale_ / (d * d)};
+    const T outside = std::max(below / m, T(0)), sum = outside + scale_ * x;
+    const T q = std::min(scale_ * x / sum, T(1)), rest = outside / sum;  // 1 - q
+    const T d = scale_ * rest + q / m, r = std::sqrt(q);
+    return {{r, select(across > 0, fast_atan2(h.y, h.x), T(0)), rest / (1 + r)}, 2 * length * scale_ / (d * d)};
   }
 
  private:

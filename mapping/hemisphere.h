@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/vec3.hpp>
+#include <limits>
 
 namespace gonio {
 
@@ -14,11 +15,17 @@ using Vec3 = glm::vec<3, T, glm::defaultp>;
 
 /// Polar coordinates on the disk that the hemisphere lies flattened on: r = sqrt(1 - cos theta)
 /// (Havran et al. 2003, eq. 3; their eq. 6, "r = sqrt(1 - theta^2)", is a misprint), phi in
-/// [-pi, pi]. The solid angle element is 2 r dr dphi.
+/// [-pi, pi]. The solid angle element is 2 r dr dphi. `gap` is 1 - r, the way to the horizon: there it has
+/// digits that r has not, and densities that fall to 0 at the horizon have no others.
 template <class T>
 struct Polar {
-  T r, phi;
+  T r, phi, gap = 1 - r;
 };
+
+/// The least gap of a drawn direction: what lies nearer to the horizon counts as this far from it. cos theta is
+/// then an epsilon of T.
+template <class T>
+inline constexpr T least_gap = std::numeric_limits<T>::epsilon() / 2;
 
 /// M_E, eqs. 2 and 3: disk to upper hemisphere. @param p r in [0, 1].
 /// @return a unit vector; relative error of each component at most 4 ulp, also next to the pole.
@@ -27,17 +34,18 @@ Vec3<T> polar_to_direction(Polar<T> p) noexcept {
   const T sin_theta =
       p.r * std::sqrt(2 - p.r * p.r);  // sin^2 = (1 - cos)(1 + cos), no cancellation
   const SinCos<T> phi = sin_cos(p.phi);
-  return {sin_theta * phi.cos, sin_theta * phi.sin, (1 - p.r) * (1 + p.r)};
+  return {sin_theta * phi.cos, sin_theta * phi.sin, p.gap * (1 + p.r)};
 }
 
 /// The inverse of polar_to_direction(). @param w a unit vector with w.z >= 0.
 /// r^2 is 1 - cos near the horizon, where that is exact, and sin^2 / (1 + cos) near the pole, where it
-/// would lose all digits. r has a relative error of at most 4 ulp for a `w` that is a unit vector to rounding,
-/// phi that of fast_atan2().
+/// would lose all digits. r and gap have a relative error of at most 4 ulp for a `w` that is a unit vector to
+/// rounding, phi that of fast_atan2().
 template <class T>
 Polar<T> direction_to_polar(const Vec3<T>& w) noexcept {
   const T r2 = select(w.z < T(0.5), 1 - w.z, (w.x * w.x + w.y * w.y) / (1 + w.z));
-  return {std::min(std::sqrt(r2), T(1)), fast_atan2(w.y, w.x)};
+  const T r = std::min(std::sqrt(r2), T(1));
+  return {r, fast_atan2(w.y, w.x), w.z / (1 + r)};
 }
 
 /// The parallel theta as a radius on the disk; theta in [0, pi/2]. sqrt(1 - cos) as sqrt(2)

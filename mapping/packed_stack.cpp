@@ -21,7 +21,7 @@ class PackedStack::Blended {
     w0_ = (1 - alpha) * stack.scale()[k0_], w1_ = alpha * stack.scale()[k1_];
   }
 
-  PolarSample<float> sample(float u, float v) const noexcept {
+  PolarSample<float> sample(float u, float v, float rest) const noexcept {
     const int last = stack_.meridians_ - 1;
     const float angle = std::clamp(u, 0.0f, 1.0f) * below(last);
     const float *c0 = stack_.cumulative_phi(k0_), *c1 = stack_.cumulative_phi(k1_);
@@ -31,7 +31,7 @@ class PackedStack::Blended {
     const float a = across.invert(angle - below(i));
     const Rows rows(*this, i, a);
 
-    const float target = std::clamp(v, 0.0f, 1.0f) * rows.mass();
+    const float mass = rows.mass(), target = std::clamp(v, 0.0f, 1.0f) * mass;
     const int b = find_cell_of([&](int k) { return rows.start(k); }, stack_.blocks_ + 1, target);
     const Cells cells(rows, b);
     const float inside = target - rows.start(b);
@@ -42,10 +42,10 @@ class PackedStack::Blended {
       j = later ? k : j, before = later ? sum : before;
       sum += cells.mass[k];
     }
-    const RadialCell<float> cell = cells.cell(j);
-    const float rest = inside - before;
-    const float s = rest > 0 && cells.mass[j] > 0 ? cell.invert(std::min(rest / cells.mass[j], 1.0f)) : 0.0f;
-    return {{cell.r0 + s * cell.h, phi[0] + a * across.width}, cell.density(s)};
+    const bool ends = b * block + j == stack_.parallels_ - 2 || ends_mass(rows.start(b) + before + cells.mass[j], mass);
+    const auto p =
+        RadialPlace<float>::of(cells.cell(j), cells.r[j + 1], inside - before, rest * mass, ends).within(least_gap<float>);
+    return {{p.r(), phi[0] + a * across.width, p.gap()}, p.density()};
   }
 
   float pdf(Polar<float> at) const noexcept {
@@ -54,7 +54,7 @@ class PackedStack::Blended {
     const int j = find_cell(stack_.r(), stack_.parallels_, at.r);
     const float* r = stack_.r() + j;
     const RadialCell<float> cell{r[0], r[1] - r[0], rows.density(j), rows.density(j + 1)};
-    return cell.density(std::clamp((at.r - cell.r0) / cell.h, 0.0f, 1.0f));
+    return cell.density_at(at.r, at.gap, 1 - r[1]);
   }
 
   PolarInverse<float> invert(Polar<float> at) const noexcept {
@@ -69,7 +69,7 @@ class PackedStack::Blended {
     const RadialCell<float> cell = cells.cell(j - b * block);
     const float s = std::clamp((at.r - cell.r0) / cell.h, 0.0f, 1.0f);
     const float v = mass > 0 ? std::min((rows.start(b) + before + cell.mass(s)) / mass, 1.0f) : 0.0f;
-    return {std::min(angle / below(stack_.meridians_ - 1), 1.0f), v, cell.density(s)};
+    return {std::min(angle / below(stack_.meridians_ - 1), 1.0f), v, cell.density_at(at.r, at.gap, 1 - stack_.r()[j + 1])};
   }
 
  private:
@@ -185,7 +185,7 @@ PackedStack::PackedStack(const StackGrid& grid) : chart_(grid.chart) {
 DirectionSample<float> PackedStack::sample(float theta_i, float u, float v) const noexcept {
   const DiskPoint<float> disk = square_to_disk(u, v);
   const Folded<float> folded = fold(disk.turn, true);
-  return from_disk(chart_, theta_i, Blended(*this, theta_i).sample(folded.u, disk.r2), folded.mirrored);
+  return from_disk(chart_, theta_i, Blended(*this, theta_i).sample(folded.u, disk.r2, disk.rest), folded.mirrored);
 }
 
 float PackedStack::pdf(float theta_i, const Vec3<float>& wo) const noexcept {

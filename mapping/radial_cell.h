@@ -31,7 +31,9 @@ struct RadialCell {
   /// largest real root is the wanted one, and s = tau / (z + c/3) is a quotient of positive sums.
   /// A constant number of operations; backward stable: |mass(s)/mass(1) - tau| <= 16 ulp(1).
   ///
-  /// @param tau in (0, 1]. @pre mass(1) > 0.
+  /// A cell counted from its end (see from_end()) is inverted as well.
+  ///
+  /// @param tau in (0, 1]. @pre mass(1) is not 0.
   T invert(T tau) const noexcept {
     using std::sqrt;  // other types of T bring their own
     const T delta = d1 - d0, third = T(1) / 3;
@@ -52,6 +54,46 @@ struct RadialCell {
     const T z = (t.root + p3 * t.inverse) + 2 * root_p3 * (trigonometric - 1);
     const T denominator = z + c3;
     return denominator > tau ? tau / denominator : T(1);
+  }
+
+  /// The same cell counted from its end, the radius r1, inwards: h is negative, and so are its masses.
+  RadialCell from_end(T r1) const noexcept { return {r1, -h, d1, d0}; }
+
+  T radius(T s) const noexcept { return r0 + s * h; }
+  /// 1 - radius(s); next to the horizon, in a cell that is counted from there, to all digits.
+  T gap(T s) const noexcept { return (1 - r0) - s * h; }
+
+  /// The density at a radius and its gap, `end_gap` being 1 less the radius of the end. Each is trusted next to
+  /// the end of the cell where it has the digits.
+  T density_at(T r, T to_horizon, T end_gap) const noexcept {
+    const T s = std::clamp((r - r0) / h, T(0), T(1)), t = std::clamp((to_horizon - end_gap) / h, T(0), T(1));
+    return t < T(0.5) ? (1 - t) * d1 + t * d0 : density(s);
+  }
+};
+
+/// Where a draw falls in a cell.
+template <class T>
+struct RadialPlace {
+  RadialCell<T> cell;  ///< counted from its start or from its end
+  T s;
+
+  /// @param inside the mass from the start of the cell to the draw. @param beyond the mass of the meridian behind the
+  ///   draw, to all its digits. @param last whether the cell is the last one with mass: then it is counted from its
+  ///   end, by `beyond`. Of the mass before the last cell, inside is a difference: it says little about the end of a
+  ///   cell whose density falls to 0 there.
+  static RadialPlace of(const RadialCell<T>& cell, T r1, T inside, T beyond, bool last) noexcept {
+    const T mass = cell.mass(1), part = select(last, beyond, inside);
+    const RadialCell<T> c{select(last, r1, cell.r0), select(last, -cell.h, cell.h), select(last, cell.d1, cell.d0),
+                          select(last, cell.d0, cell.d1)};
+    return {c, part > 0 && mass > 0 ? c.invert(std::min(part / mass, T(1))) : T(0)};
+  }
+
+  T r() const noexcept { return cell.radius(s); }
+  T gap() const noexcept { return cell.gap(s); }
+  T density() const noexcept { return cell.density(s); }
+  /// The place, or the one at the gap `least` where that is further from the horizon.
+  RadialPlace within(T least) const noexcept {
+    return {cell, gap() < least ? std::min(((1 - cell.r0) - least) / cell.h, T(1)) : s};
   }
 };
 

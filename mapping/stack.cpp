@@ -10,21 +10,21 @@ namespace gonio {
 namespace {
 
 template <class T>
-PolarSample<T> sample_one(const Diagram<T>& diagram, T u, T v) noexcept {
+PolarSample<T> sample_one(const Diagram<T>& diagram, T u, T v, T rest) noexcept {
   const auto m = diagram.meridian_at(u);
-  const auto p = diagram.parallel_at(m, v);
-  return {{p.r, m.phi}, p.pdf};
+  const auto p = diagram.parallel_at(m, v, rest);
+  return {{p.r, m.phi, p.gap}, p.pdf};
 }
 
 template <class T>
 PolarInverse<T> invert_one(const Diagram<T>& diagram, Polar<T> at) noexcept {
   const auto m = diagram.meridian_through(at.phi);
-  return {diagram.u_of(m), diagram.v_of(m, at.r), diagram.pdf(m, at.r)};
+  return {diagram.u_of(m), diagram.v_of(m, at.r), diagram.pdf(m, at.r, at.gap)};
 }
 
 template <class T>
 T pdf_one(const Diagram<T>& diagram, Polar<T> at) noexcept {
-  return diagram.pdf(diagram.meridian_through(at.phi), at.r);
+  return diagram.pdf(diagram.meridian_through(at.phi), at.r, at.gap);
 }
 
 }  // namespace
@@ -83,18 +83,18 @@ DirectionSample<T> Stack<T>::sample(T theta_i, T u, T v) const noexcept {
   const Place at = place(theta_i);
   PolarSample<T> s;
   if (at.alpha == 0) {
-    s = sample_one(at.first, folded.u, disk.r2);
+    s = sample_one(at.first, folded.u, disk.r2, disk.rest);
   } else if (interpolation_ == Interpolation::mixture) {
     const T w0 = 1 - at.alpha;
     const bool first = disk.r2 < w0;
-    const T rest = first ? disk.r2 / w0 : (disk.r2 - w0) / at.alpha;
-    s = sample_one(first ? at.first : at.second, folded.u, rest);
+    s = first ? sample_one(at.first, folded.u, disk.r2 / w0, (w0 - disk.r2) / w0)
+              : sample_one(at.second, folded.u, (disk.r2 - w0) / at.alpha, disk.rest / at.alpha);
     const Diagram<T>& other = first ? at.second : at.first;
     s.pdf = (first ? w0 : at.alpha) * s.pdf + (first ? at.alpha : w0) * pdf_one(other, s.at);
   } else if (interpolation_ == Interpolation::blend) {
-    s = Blend<T>(at.first, at.second, at.alpha).sample(folded.u, disk.r2);
+    s = Blend<T>(at.first, at.second, at.alpha).sample(folded.u, disk.r2, disk.rest);
   } else {
-    s = Displacement<T>(at.first, at.second, at.alpha).sample(folded.u, disk.r2);
+    s = Displacement<T>(at.first, at.second, at.alpha).sample(folded.u, disk.r2, disk.rest);
   }
   return from_disk(chart_, theta_i, s, folded.mirrored);
 }

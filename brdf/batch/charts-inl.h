@@ -19,7 +19,7 @@ struct Direction {
 
 /// square_to_disk() and its fold onto a half diagram: the two numbers of the diagram.
 struct Folded {
-  V u, v;
+  V u, v, rest;  // 1 - v
   M mirrored;
 
   HWY_INLINE V sign() const { return hn::IfThenElse(mirrored, set(-1), set(1)); }  // of phi
@@ -32,9 +32,11 @@ HWY_INLINE Folded square_to_diagram(V u, V v, bool half) {
   turn = hn::IfThenElse(hn::Lt(x, zero()), hn::Sub(set(0.5f), turn), turn);
   const M lower = hn::Lt(y, zero());
   const V r2 = hn::Min(hn::Mul(radius, radius), set(1));
-  if (half) return {hn::Add(turn, turn), r2, lower};
+  const V nearest_side = hn::Min(hn::Min(u, hn::Sub(set(1), u)), hn::Min(v, hn::Sub(set(1), v)));
+  const V to_rim = hn::Add(nearest_side, nearest_side), rest = hn::Mul(to_rim, hn::Sub(set(2), to_rim));
+  if (half) return {hn::Add(turn, turn), r2, rest, lower};
   turn = hn::IfThenElse(lower, hn::Sub(set(1), turn), turn);
-  return {hn::IfThenElseZero(hn::Lt(turn, set(1)), turn), r2, hn::MaskFromVec(zero())};
+  return {hn::IfThenElseZero(hn::Lt(turn, set(1)), turn), r2, rest, hn::MaskFromVec(zero())};
 }
 
 /// The inverse of square_to_diagram().
@@ -62,21 +64,24 @@ HWY_INLINE Square diagram_to_square(V u, V r2, M mirrored, bool half) {
 }
 
 /// polar_to_direction() from sine and cosine of phi.
-HWY_INLINE Direction to_hemisphere(V r, SinCos phi) {
+HWY_INLINE Direction to_hemisphere(V r, V gap, SinCos phi) {
   const V sin_theta = hn::Mul(r, hn::Sqrt(hn::NegMulAdd(r, r, set(2))));
-  return {hn::Mul(sin_theta, phi.cos), hn::Mul(sin_theta, phi.sin), hn::Mul(hn::Sub(set(1), r), hn::Add(set(1), r))};
+  return {hn::Mul(sin_theta, phi.cos), hn::Mul(sin_theta, phi.sin), hn::Mul(gap, hn::Add(set(1), r))};
 }
 
-/// A point of the disk, phi as its distance from 0, and HalfVectorChart's Jacobian.
+/// A point of the disk, phi as its distance from 0, and HalfVectorChart's Jacobian. The gap is at least `rim`, the
+/// least_gap of float.
 struct DiskPlace {
-  V r, phi, jacobian;
+  V r, gap, phi, jacobian;
 };
+constexpr float rim = 0.5f * 1.1920929e-7f;
 
 /// direction_to_polar().
 HWY_INLINE DiskPlace from_hemisphere(const Direction& w) {
   const V across = hn::MulAdd(w.x, w.x, hn::Mul(w.y, w.y));
   const V r2 = hn::IfThenElse(hn::Lt(w.z, set(0.5f)), hn::Sub(set(1), w.z), hn::Div(across, hn::Add(set(1), w.z)));
-  return {hn::Min(hn::Sqrt(r2), set(1)), abs_atan2(w.y, w.x), set(1)};
+  const V r = hn::Min(hn::Sqrt(r2), set(1));
+  return {r, hn::Max(hn::Div(w.z, hn::Add(set(1), r)), set(rim)), abs_atan2(w.y, w.x), set(1)};
 }
 
 /// HalfVectorChart.
@@ -107,9 +112,9 @@ struct HalfChart {
     Direction wo;
     V jacobian;
   };
-  HWY_INLINE Image direction(V r, SinCos phi) const {
+  HWY_INLINE Image direction(V r, V gap, SinCos phi) const {
     const Meridian h = meridian(phi.cos);
-    const V one = set(1), q = hn::Mul(r, r), rest = hn::Mul(hn::Sub(one, r), hn::Add(one, r));
+    const V one = set(1), q = hn::Mul(r, r), rest = hn::Mul(gap, hn::Add(one, r));
     const V d = hn::MulAdd(scale, rest, hn::Div(q, h.m)), inverse_d = hn::Div(one, d);
     const V below = hn::Mul(hn::Mul(scale, h.m), hn::Mul(rest, inverse_d));
     const V cos_h = hn::Add(h.cos_max, below);
@@ -140,9 +145,10 @@ struct HalfChart {
         hn::Add(cos_h, h.cos_max));
     const V below = hn::IfThenElse(hn::Gt(hn::Add(rise, rise), h.m), near, hn::Sub(h.m, rise));
     const V steep = hn::Mul(scale, rise);
-    const V q = hn::Min(hn::Div(steep, hn::Add(hn::Div(below, h.m), steep)), one);
-    const V d = hn::MulAdd(scale, hn::Sub(one, q), hn::Div(q, h.m));
-    return {hn::Sqrt(q), hn::IfThenElseZero(off_pole, abs_atan2(y, x)),
+    const V outside = hn::Max(hn::Div(below, h.m), zero()), inverse_sum = hn::Div(one, hn::Add(outside, steep));
+    const V q = hn::Min(hn::Mul(steep, inverse_sum), one), rest = hn::Mul(outside, inverse_sum);  // 1 - q
+    const V d = hn::MulAdd(scale, rest, hn::Div(q, h.m)), r = hn::Sqrt(q);
+    return {r, hn::Max(hn::Div(rest, hn::Add(one, r)), set(rim)), hn::IfThenElseZero(off_pole, abs_atan2(y, x)),
             hn::Div(hn::Mul(hn::Mul(set(2), length), scale), hn::Mul(d, d))};
   }
 };
@@ -152,12 +158,11 @@ struct Drawn {
   Direction wo;
   V pdf;
 };
-HWY_INLINE Drawn from_disk(const BatchLayout& layout, V theta_i, V r, V angle, V sign, V pdf) {
-  r = hn::Min(r, set(1 - 0.5f * 1.1920929e-7f));
+HWY_INLINE Drawn from_disk(const BatchLayout& layout, V theta_i, V r, V gap, V angle, V sign, V pdf) {
   SinCos phi = sin_cos(angle);
   phi.sin = hn::Mul(phi.sin, sign);
-  if (!layout.half_chart) return {to_hemisphere(r, phi), pdf};
-  const HalfChart::Image image = HalfChart(theta_i).direction(r, phi);
+  if (!layout.half_chart) return {to_hemisphere(r, gap, phi), pdf};
+  const HalfChart::Image image = HalfChart(theta_i).direction(r, gap, phi);
   return {image.wo, hn::Div(pdf, image.jacobian)};
 }
 

@@ -25,7 +25,7 @@ struct MapBlock {
   using Floats = float[size];
   HWY_ALIGN Floats target, below;  // mass before the position that is searched, before its cell
   HWY_ALIGN float cell[4 * size];  // phi, mass, phi, mass of the meridians, then r, r, density, density of the parallels about it
-  HWY_ALIGN Floats a, b, phi, mass, r, pdf;  // b = 1 - a
+  HWY_ALIGN Floats a, b, phi, mass, r, gap, pdf;  // b = 1 - a
   HWY_ALIGN int block[size];       // of the diagram, the first of two: its place in layout.values
   int group[size], meridian[size];
 };
@@ -88,9 +88,10 @@ HWY_INLINE void find_parallels(const BatchLayout& layout, std::size_t count, Map
 }
 
 /// Diagram::meridian_at() and parallel_at() of `count` elements with their `block` and `target`, the mass before the meridian;
-/// v(k) is the other uniform number of the elements from k on.
-template <std::size_t size, class SourceOf, class V0>
-HWY_INLINE void draw_map(const BatchLayout& layout, std::size_t count, MapBlock<size>& map, const SourceOf& source_of, const V0& v) {
+/// v(k) is the other uniform number of the elements from k on, rest(k) is 1 - v(k).
+template <bool within_rim, std::size_t size, class SourceOf, class V0, class V1>
+HWY_INLINE void draw_map(const BatchLayout& layout, std::size_t count, MapBlock<size>& map, const SourceOf& source_of, const V0& v,
+                         const V1& rest) {
   const D d;
   find_meridian_groups(layout, count, map, source_of);
   find_meridians(layout, count, map, source_of);
@@ -110,8 +111,9 @@ HWY_INLINE void draw_map(const BatchLayout& layout, std::size_t count, MapBlock<
     V r1;
     load4(map.cell + 4 * k, c.r0, r1, c.d0, c.d1);
     c.h = hn::Sub(r1, c.r0);
-    const V s = c.invert(hn::Sub(hn::Load(d, map.target + k), hn::Load(d, map.below + k)));
-    hn::Store(hn::MulAdd(s, c.h, c.r0), d, map.r + k), hn::Store(c.density(s), d, map.pdf + k);
+    CellDraw draw(c, r1, hn::Load(d, map.below + k), hn::Load(d, map.mass + k), v(k), rest(k));
+    if constexpr (within_rim) draw.keep_within(rim);
+    hn::Store(draw.r(), d, map.r + k), hn::Store(draw.gap(), d, map.gap + k), hn::Store(draw.density(), d, map.pdf + k);
   }
 }
 
@@ -119,8 +121,8 @@ HWY_INLINE void draw_map(const BatchLayout& layout, std::size_t count, MapBlock<
 struct DiskBlock {
   using Floats = float[block_size];
   HWY_ALIGN int block[block_size];  // of the diagram before the incident angle: its place in layout.values()
-  HWY_ALIGN Floats target, v;  // the uniform numbers of the diagram, the first one times its mass
-  HWY_ALIGN Floats r, phi, pdf;
+  HWY_ALIGN Floats target, v, rest;  // the uniform numbers of the diagram, the first one times its mass, and 1 less the second
+  HWY_ALIGN Floats r, gap, phi, pdf;
 };
 
 /// Of one diagram each, or, if `blended`, of the one before the incident angle and the next: Blend::sample().
@@ -129,14 +131,16 @@ HWY_INLINE void draw_single(const BatchLayout& layout, std::size_t count, const 
   const D d;
   MapBlock<block_size> map;
   std::copy_n(disk.block, count, map.block), std::copy_n(disk.target, count, map.target);
-  draw_map(layout, count, map,
+  draw_map<true>(layout, count, map,
            [&](std::size_t k) GONIO_INLINED {
              const float* block = layout.values() + map.block[k];
              if constexpr (blended) return TwoSources{block, layout.stride, 1 - alpha[k], alpha[k]};
              else return OneSource{block};
            },
-           [&](std::size_t k) GONIO_INLINED { return hn::Load(d, disk.v + k); });
-  std::copy_n(map.r, count, disk.r), std::copy_n(map.phi, count, disk.phi), std::copy_n(map.pdf, count, disk.pdf);
+           [&](std::size_t k) GONIO_INLINED { return hn::Load(d, disk.v + k); },
+           [&](std::size_t k) GONIO_INLINED { return hn::Load(d, disk.rest + k); });
+  std::copy_n(map.r, count, disk.r), std::copy_n(map.gap, count, disk.gap);
+  std::copy_n(map.phi, count, disk.phi), std::copy_n(map.pdf, count, disk.pdf);
 }
 
 /// Displacement::sample(). Both diagrams of all elements are drawn as one block, those before the incident angles first.
@@ -144,25 +148,33 @@ HWY_INLINE void draw_displacement(const BatchLayout& layout, std::size_t count, 
   const D d;
   const DI di;
   MapBlock<2 * block_size> map;
-  const V smallest = set(smallest_v), whole = set(layout.whole_mass());
+  const V least = set(smallest_v), whole = set(layout.whole_mass());
   for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
     const V target = hn::Load(d, disk.target + k);
     hn::Store(target, d, map.target + k), hn::Store(target, d, map.target + count + k);
     const VI block = hn::Load(di, disk.block + k);
     hn::Store(block, di, map.block + k), hn::Store(hn::Add(block, set_int(layout.stride)), di, map.block + count + k);
-    hn::Store(hn::Max(hn::Load(d, disk.v + k), smallest), d, disk.v + k);
+    hn::Store(hn::Max(hn::Load(d, disk.v + k), least), d, disk.v + k);
   }
-  draw_map(layout, 2 * count, map, [&](std::size_t k) GONIO_INLINED { return OneSource{layout.values() + map.block[k]}; },
-           [&](std::size_t k) GONIO_INLINED { return hn::Load(d, disk.v + (k < count ? k : k - count)); });
+  const auto shared = [&](const float* x, std::size_t k) GONIO_INLINED { return hn::Load(d, x + (k < count ? k : k - count)); };
+  draw_map<false>(layout, 2 * count, map, [&](std::size_t k) GONIO_INLINED { return OneSource{layout.values() + map.block[k]}; },
+                  [&](std::size_t k) GONIO_INLINED { return shared(disk.v, k); },
+                  [&](std::size_t k) GONIO_INLINED { return shared(disk.rest, k); });
   for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
     const V w1 = hn::Load(d, alpha + k), w0 = hn::Sub(set(1), w1);
     const auto first = [&](const float* x) GONIO_INLINED { return hn::Load(d, x + k); };
     const auto second = [&](const float* x) GONIO_INLINED { return hn::Load(d, x + count + k); };
-    const V m0 = first(map.mass), m1 = second(map.mass), r0 = first(map.r), r1 = second(map.r);
-    const V r = hn::MulAdd(w0, r0, hn::Mul(w1, r1));
-    hn::Store(r, d, disk.r + k);
-    hn::Store(hn::MulAdd(w0, first(map.phi), hn::Mul(w1, second(map.phi))), d, disk.phi + k);
-    hn::Store(displaced_density(w0, w1, whole, {m0, r0, first(map.pdf)}, {m1, r1, second(map.pdf)}, r), d, disk.pdf + k);
+    const auto between = [&](V a, V b) GONIO_INLINED { return hn::MulAdd(w0, a, hn::Mul(w1, b)); };
+    const Displaced at0{first(map.mass), first(map.r), first(map.pdf)}, at1{second(map.mass), second(map.r), second(map.pdf)};
+    V r = between(at0.r, at1.r), gap = between(first(map.gap), second(map.gap));
+    const V phi = between(first(map.phi), second(map.phi));
+    V pdf = displaced_density(w0, w1, whole, at0, at1, r);
+    const M beyond = hn::Or(hn::Lt(hn::Load(d, disk.rest + k), set(tail)), hn::Lt(gap, set(rim)));
+    if (HWY_UNLIKELY(!hn::AllFalse(d, beyond))) {
+      r = hn::Min(r, set(1 - rim)), gap = hn::Max(gap, set(rim));
+      pdf = hn::IfThenElse(beyond, DisplacementLanes(layout, hn::Load(di, disk.block + k), w1).pdf(r, gap, phi), pdf);
+    }
+    hn::Store(r, d, disk.r + k), hn::Store(gap, d, disk.gap + k), hn::Store(phi, d, disk.phi + k), hn::Store(pdf, d, disk.pdf + k);
   }
 }
 
@@ -176,7 +188,7 @@ HWY_INLINE void draw_stack(const BatchLayout& layout, std::size_t count, const P
   for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
     hn::Store(block_of(layout, {hn::Load(di, places.k + k), hn::Load(d, places.alpha + k)}), di, disk.block + k);
     const Folded uv = square_to_diagram(hn::LoadU(d, u + k), hn::LoadU(d, v + k), layout.half_azimuth);
-    hn::Store(hn::Mul(uv.u, set(layout.whole_mass())), d, disk.target + k), hn::Store(uv.v, d, disk.v + k);
+    hn::Store(hn::Mul(uv.u, set(layout.whole_mass())), d, disk.target + k), hn::Store(uv.v, d, disk.v + k), hn::Store(uv.rest, d, disk.rest + k);
     hn::Store(uv.sign(), d, sign + k);
   }
   if (layout.angles.count == 1 || layout.interpolation == Interpolation::nearest) {
@@ -187,8 +199,8 @@ HWY_INLINE void draw_stack(const BatchLayout& layout, std::size_t count, const P
     draw_displacement(layout, count, places.alpha, disk);
   }
   for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
-    const Drawn at = from_disk(layout, hn::LoadU(d, theta_i + k), hn::Load(d, disk.r + k), hn::Load(d, disk.phi + k), hn::Load(d, sign + k),
-                               hn::Load(d, disk.pdf + k));
+    const Drawn at = from_disk(layout, hn::LoadU(d, theta_i + k), hn::Load(d, disk.r + k), hn::Load(d, disk.gap + k), hn::Load(d, disk.phi + k),
+                               hn::Load(d, sign + k), hn::Load(d, disk.pdf + k));
     hn::StoreU(at.wo.x, d, x + k), hn::StoreU(at.wo.y, d, y + k), hn::StoreU(at.wo.z, d, z + k), hn::StoreU(at.pdf, d, pdf + k);
   }
 }

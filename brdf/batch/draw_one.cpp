@@ -54,12 +54,12 @@ HWY_INLINE float second_lane(V x) { return hn::ExtractLane(x, 1); }
 
 /// Where a draw falls in one or two diagrams.
 struct InDiagrams {
-  V mass, phi, r, pdf;
+  V mass, phi, r, gap, pdf;
 };
 
 /// Diagram::meridian_at() and parallel_at(), the mass before the meridian being `target`; of the first source alone, or of both.
 template <bool both, class Source>
-HWY_INLINE InDiagrams draw_maps(const BatchLayout& layout, const Source& source0, const Source& source1, V target, V v) {
+HWY_INLINE InDiagrams draw_maps(const BatchLayout& layout, const Source& source0, const Source& source1, V target, V v, V rest) {
   constexpr std::ptrdiff_t cells = BatchLayout::group, floats = BatchLayout::parallel_group;
   struct Sector {
     std::ptrdiff_t index;
@@ -93,21 +93,23 @@ HWY_INLINE InDiagrams draw_maps(const BatchLayout& layout, const Source& source0
   const Ring r0 = ring(source0, s0.index, hn::GetLane(b), hn::GetLane(a), hn::GetLane(next));
   const Ring r1 = both ? ring(source1, s1.index, second_lane(b), second_lane(a), second_lane(next)) : r0;
   Cell c{first_lanes(r0.r, r1.r), zero(), first_lanes(r0.density, r1.density), second_lanes(r0.density, r1.density)};
-  c.h = hn::Sub(second_lanes(r0.r, r1.r), c.r0);
-  const V s = c.invert(hn::Sub(next, lanes(r0.below, r1.below)));
-  return {mass, hn::MulAdd(a, width, phi0), hn::MulAdd(s, c.h, c.r0), c.density(s)};
+  const V end = second_lanes(r0.r, r1.r);
+  c.h = hn::Sub(end, c.r0);
+  CellDraw draw(c, end, lanes(r0.below, r1.below), mass, v, rest);
+  if constexpr (!both) draw.keep_within(rim);
+  return {mass, hn::MulAdd(a, width, phi0), draw.r(), draw.gap(), draw.density()};
 }
 
 /// Displacement::sample().
-HWY_INLINE InDiagrams draw_displaced(const BatchLayout& layout, const float* block, float alpha, V target, V v) {
+HWY_INLINE InDiagrams draw_displaced(const BatchLayout& layout, const float* block, float alpha, V target, V v, V rest) {
   const OneSource first{block}, second{block + layout.stride};
-  v = hn::Max(v, set(smallest_v));
-  const InDiagrams x = draw_maps<true>(layout, first, second, target, v);
+  const InDiagrams x = draw_maps<true>(layout, first, second, target, hn::Max(v, set(smallest_v)), rest);
   const auto other = [](V lane) HWY_ATTR { return hn::Reverse2(D(), lane); };
-  const InDiagrams y{other(x.mass), other(x.phi), other(x.r), other(x.pdf)};
-  const V w1 = set(alpha), w0 = hn::Sub(set(1), w1), r = hn::MulAdd(w0, x.r, hn::Mul(w1, y.r));
-  const V density = displaced_density(w0, w1, set(layout.whole_mass()), {x.mass, x.r, x.pdf}, {y.mass, y.r, y.pdf}, r);
-  return {x.mass, hn::MulAdd(w0, x.phi, hn::Mul(w1, y.phi)), r, density};
+  const V w1 = set(alpha), w0 = hn::Sub(set(1), w1);
+  const auto between = [&](V lane) HWY_ATTR { return hn::MulAdd(w0, lane, hn::Mul(w1, other(lane))); };
+  const V r = between(x.r), whole = set(layout.whole_mass());
+  return {x.mass, between(x.phi), r, between(x.gap),
+          displaced_density(w0, w1, whole, {x.mass, x.r, x.pdf}, {other(x.mass), other(x.r), other(x.pdf)}, r)};
 }
 
 /// BatchSampler::sample(), of direction and pdf alone where there is no colour.
@@ -125,15 +127,17 @@ bool draw(const BatchLayout& layout, const BatchColour* colour, const glm::vec3&
   const float* block = layout.values() + place.k * layout.stride;
   InDiagrams at;
   if (layout.angles.count > 1 && layout.interpolation == Interpolation::displacement) {
-    at = draw_displaced(layout, block, place.alpha, target, uv.v);
+    at = draw_displaced(layout, block, place.alpha, target, uv.v, uv.rest);
+    // What takes the pdf from the direction, which vectors of two do not.
+    if (HWY_UNLIKELY(hn::GetLane(uv.rest) < tail || hn::GetLane(at.gap) < rim)) return draw_in_one_lane(layout, colour, wi, u, out);
   } else if (layout.angles.count > 1 && layout.interpolation == Interpolation::blend) {
     const TwoSources source{block, layout.stride, 1 - place.alpha, place.alpha};
-    at = draw_maps<false>(layout, source, source, target, uv.v);
+    at = draw_maps<false>(layout, source, source, target, uv.v, uv.rest);
   } else {
     const OneSource source{block + (layout.angles.count > 1 && !(place.alpha < 0.5f) ? layout.stride : 0)};
-    at = draw_maps<false>(layout, source, source, target, uv.v);
+    at = draw_maps<false>(layout, source, source, target, uv.v, uv.rest);
   }
-  const Drawn drawn = from_disk(layout, frame.i.theta, at.r, at.phi, uv.sign(), at.pdf);
+  const Drawn drawn = from_disk(layout, frame.i.theta, at.r, at.gap, at.phi, uv.sign(), at.pdf);
   const Direction wo = to_surface(frame.cos_phi, frame.sin_phi, drawn.wo);
   out.wo = {hn::GetLane(wo.x), hn::GetLane(wo.y), hn::GetLane(wo.z)}, out.pdf = hn::GetLane(drawn.pdf);
   return out.pdf > 0 && out.wo.z > 0;

@@ -172,18 +172,31 @@ struct Cell {
 
   HWY_INLINE V density(V s) const { return mix(s, d0, d1); }
   HWY_INLINE V place(V r) const { return clamp01(hn::Div(hn::Sub(r, r0), h)); }
+  HWY_INLINE V radius(V s) const { return hn::MulAdd(s, h, r0); }
+  HWY_INLINE V gap(V s) const { return hn::NegMulAdd(s, h, hn::Sub(set(1), r0)); }
+  /// from_end() in the lanes of `ends`, this cell in the others.
+  HWY_INLINE Cell from_end(M ends, V r1) const {
+    return {hn::IfThenElse(ends, r1, r0), hn::IfThenElse(ends, hn::Neg(h), h), hn::IfThenElse(ends, d1, d0), hn::IfThenElse(ends, d0, d1)};
+  }
+  HWY_INLINE V density_at(V r, V to_horizon, V end_gap) const {
+    const V t = clamp01(hn::Div(hn::Sub(to_horizon, end_gap), h));
+    return hn::IfThenElse(hn::Lt(t, set(0.5f)), mix(t, d1, d0), density(place(r)));
+  }
   HWY_INLINE V mass(V s) const {
     const V ds = density(s), sh = hn::Mul(s, h);
     const V third = hn::Mul(hn::Mul(sh, set(1.0f / 3)), hn::MulAdd(set(2), ds, d0));
     return hn::Mul(sh, hn::MulAdd(r0, hn::Add(d0, ds), third));
   }
 
-  /// RadialCell::invert() of the mass `inside`; 0 where the cell or `inside` has none.
-  HWY_INLINE V invert(V inside) const {
+  /// The mass over h.
+  HWY_INLINE V mean() const {
+    return hn::MulAdd(r0, hn::Add(d0, d1), hn::Mul(hn::Mul(h, set(1.0f / 3)), hn::MulAdd(set(2), d1, d0)));
+  }
+  /// RadialCell::invert() of the mass `inside`, `sum` being mean() and `whole` the mass; 0 where the cell or `inside` has none.
+  HWY_INLINE V invert(V inside, V sum, V whole) const {
     const V one = set(1), third = set(1.0f / 3);
-    const V sum = hn::MulAdd(r0, hn::Add(d0, d1), hn::Mul(hn::Mul(h, third), hn::MulAdd(set(2), d1, d0)));
     const V scale = hn::Div(one, sum);
-    const V tau = hn::Min(hn::Div(inside, hn::Mul(sum, h)), one);
+    const V tau = hn::Min(hn::Div(inside, whole), one);
     const V delta = hn::Sub(d1, d0);
     const V c3 = hn::Mul(hn::Mul(set(2.0f / 3), hn::Mul(r0, d0)), scale);  // c / 3
     const V b = hn::Mul(hn::MulAdd(r0, delta, hn::Mul(h, d0)), scale);
@@ -197,7 +210,32 @@ struct Cell {
     const V one_root = hn::MulAdd(p3, t.inverse, t.root);
     const V denominator = hn::Add(hn::MulAdd(hn::Add(root_p3, root_p3), hn::Sub(trigonometric, one), one_root), c3);
     const V s = hn::IfThenElse(hn::Gt(denominator, tau), hn::Div(tau, denominator), one);
-    return hn::IfThenElseZero(hn::And(hn::Gt(inside, zero()), hn::Gt(hn::Mul(sum, h), zero())), s);
+    return hn::IfThenElseZero(hn::And(hn::Gt(inside, zero()), hn::Gt(whole, zero())), s);
+  }
+};
+
+/// RadialPlace.
+struct CellDraw {
+  Cell cell;
+  V s;
+
+  /// RadialPlace::of() from the mass before the cell, that of the meridian, and v and 1 - v of the draw.
+  HWY_INLINE CellDraw(const Cell& c, V r1, V before, V meridian, V v, V rest) {
+    const V sum = c.mean(), whole = hn::Mul(sum, c.h);
+    const V most = hn::Mul(meridian, set(1 - 4 * 1.1920929e-7f));
+    const M ends = hn::Or(hn::Ge(r1, set(1)), hn::Ge(hn::Add(before, whole), most));
+    cell = c.from_end(ends, r1);
+    s = cell.invert(hn::IfThenElse(ends, hn::Mul(rest, meridian), hn::MulSub(v, meridian, before)), sum, whole);
+  }
+  HWY_INLINE V r() const { return cell.radius(s); }
+  HWY_INLINE V gap() const { return cell.gap(s); }
+  HWY_INLINE V density() const { return cell.density(s); }
+  /// RadialPlace::within(rim).
+  HWY_INLINE void keep_within(float rim) {
+    const M beyond = hn::Lt(gap(), set(rim));
+    if (HWY_LIKELY(hn::AllFalse(D(), beyond))) return;
+    const V way = hn::Sub(hn::Sub(set(1), cell.r0), set(rim));
+    s = hn::IfThenElse(beyond, clamp01(hn::Div(way, cell.h)), s);
   }
 };
 
@@ -210,8 +248,8 @@ HWY_INLINE V invert_azimuth(V width, V m0, V m1, V inside) {
   return hn::Min(quotient(x, hn::Add(n0, root)), set(1));
 }
 
-/// Displacement::smallest_v.
-constexpr float smallest_v = 1.1920929e-7f * 1.1920929e-7f;
+/// Displacement::smallest_v and tail.
+constexpr float smallest_v = 1.1920929e-7f * 1.1920929e-7f, tail = 128 * 1.1920929e-7f;
 /// A position in one of two diagrams: the mass along its meridian, and the density there.
 struct Displaced {
   V mass, r, pdf;

@@ -87,16 +87,25 @@ struct DiagramLanes {
   /// A cell between two parallels on the meridian at `a` in a sector, and the mass along it before the cell.
   struct Ring {
     Cell cell;
-    V before;
+    V before, end;  // of the mass, and the radius
   };
-  HWY_INLINE Ring ring(VI i, V a, const CellPlace& j) const {
+  HWY_INLINE VI before_in_ring(VI i, const CellPlace& j) const {
     const VI g = hn::Add(hn::Mul(i, set_int(layout.along)), j.group);
-    const VI before0 = hn::Add(index(layout.parallel_groups, hn::Mul(g, set_int(BatchLayout::parallel_group))), j.in_group);
+    return hn::Add(index(layout.parallel_groups, hn::Mul(g, set_int(BatchLayout::parallel_group))), j.in_group);
+  }
+  HWY_INLINE Ring ring(VI i, V a, const CellPlace& j) const {
+    const VI before0 = before_in_ring(i, j);
     const VI before1 = hn::Add(before0, set_int(layout.along * BatchLayout::parallel_group)), density = set_int(BatchLayout::group);
     const Two d0 = source.two(hn::Add(before0, density)), d1 = source.two(hn::Add(before1, density));
     const Two r = two_at(source.values + layout.r, hn::Add(block, j.k));
     return {{r.first, hn::Sub(r.second, r.first), mix(a, d0.first, d1.first), mix(a, d0.second, d1.second)},
-            mix(a, source.value(before0), source.value(before1))};
+            mix(a, source.value(before0), source.value(before1)), r.second};
+  }
+
+  /// The mass along the meridian at `a` in a sector from a cell between two parallels on. Differences first: they are exact.
+  HWY_INLINE V mass_from(const Sector& s, V a, const CellPlace& j) const {
+    const VI first = before_in_ring(s.i, j), second = hn::Add(first, set_int(layout.along * BatchLayout::parallel_group));
+    return mix(a, hn::Sub(s.m0, source.value(first)), hn::Sub(s.m1, source.value(second)));
   }
 
   struct Meridian {
@@ -108,18 +117,18 @@ struct DiagramLanes {
     const V a = clamp01(hn::Div(hn::Sub(angle, s.phi0), hn::Sub(s.phi1, s.phi0)));
     return {s, a, mix(a, s.m0, s.m1)};
   }
-  HWY_INLINE V pdf(V radius, V angle) const {
+  HWY_INLINE V pdf(V radius, V gap, V angle) const {
     const Meridian m = meridian_through(angle);
-    const Cell c = ring(m.sector.i, m.a, find_r(radius)).cell;
-    return c.density(c.place(radius));
+    const Ring at = ring(m.sector.i, m.a, find_r(radius));
+    return at.cell.density_at(radius, gap, hn::Sub(set(1), at.end));
   }
-  HWY_INLINE Uniform invert(V radius, V angle) const {
+  HWY_INLINE Uniform invert(V radius, V gap, V angle) const {
     const Meridian m = meridian_through(angle);
     const Ring at = ring(m.sector.i, m.a, find_r(radius));
     const V inside = hn::Mul(hn::Mul(m.a, hn::Sub(m.sector.phi1, m.sector.phi0)), hn::Mul(set(0.5f), hn::Add(m.sector.m0, m.mass)));
     const V u = hn::Div(hn::Add(m.sector.before, inside), set(layout.whole_mass()));
     const V s = at.cell.place(radius), v = quotient(hn::Add(at.before, at.cell.mass(s)), m.mass);
-    return {hn::Min(u, set(1)), hn::Min(v, set(1)), at.cell.density(s)};
+    return {hn::Min(u, set(1)), hn::Min(v, set(1)), at.cell.density_at(radius, gap, hn::Sub(set(1), at.end))};
   }
 };
 using OneDiagram = DiagramLanes<One>;
@@ -164,27 +173,34 @@ struct DisplacementLanes {
     }
   };
 
-  /// Displacement::Along.
+  /// Displacement::Along: by radii or, in the lanes of `outer`, by gaps.
   struct Along {
     const OneDiagram& d;
-    VI i;
-    V a, scale, below, inside, slope, last, radius, pdf;
+    OneDiagram::Sector sector;
+    M outer;
+    V a, scale, below, inside, slope, first, last, radius, pdf;
     Cell cell;
 
-    HWY_INLINE Along(const OneDiagram& diagram, const Across& across)
-        : d(diagram), i(across.sector.i), a(across.a), scale(quotient(set(1), across.mass)), last(set(-1)) {
-      cell.r0 = set(1);
-    }
-    HWY_INLINE void move(V r) {
-      if (!hn::AllTrue(D(), hn::And(hn::Ge(r, cell.r0), hn::Le(r, last)))) {
-        const OneDiagram::Ring ring = d.ring(i, a, d.find_r(hn::Min(r, set(1))));
-        cell = ring.cell;
-        last = hn::Add(cell.r0, cell.h);
-        below = hn::Mul(ring.before, scale);
+    HWY_INLINE Along(const OneDiagram& diagram, const Across& across, M from_horizon)
+        : d(diagram), sector(across.sector), outer(from_horizon), a(across.a), scale(quotient(set(1), across.mass)),
+          first(set(1)), last(set(-1)) {}
+    HWY_INLINE void move(V way) {
+      const V one = set(1);
+      if (!hn::AllTrue(D(), hn::And(hn::Ge(way, first), hn::Le(way, last)))) {
+        const V r = hn::IfThenElse(outer, hn::Sub(one, way), way);
+        const CellPlace j = d.find_r(clamp01(r));
+        const OneDiagram::Ring ring = d.ring(sector.i, a, j);
+        const V r0 = ring.cell.r0, r1 = ring.end;
+        const M inner = hn::Lt(r1, one);  // the last cell has nothing behind it
+        const CellPlace next(hn::Add(j.k, hn::IfThenElseZero(hn::RebindMask(DI(), inner), set_int(1))));
+        const V beyond = hn::IfThenElseZero(inner, hn::Max(d.mass_from(sector, a, next), zero()));
+        below = hn::Mul(hn::IfThenElse(outer, beyond, ring.before), scale);
+        first = hn::IfThenElse(outer, hn::Sub(one, r1), r0), last = hn::IfThenElse(outer, hn::Sub(one, r0), r1);
+        cell = ring.cell.from_end(outer, r1);
       }
-      const V s = cell.place(r);
-      radius = hn::MulAdd(s, cell.h, cell.r0), pdf = cell.density(s);
-      inside = hn::Mul(cell.mass(s), scale);
+      const V s = clamp01(hn::Div(hn::Sub(way, first), hn::Sub(last, first)));
+      radius = cell.radius(s), pdf = cell.density(s);
+      inside = hn::Mul(hn::Abs(cell.mass(s)), scale);
       slope = hn::Mul(hn::Mul(set(2), radius), hn::Mul(pdf, scale));
     }
   };
@@ -209,16 +225,19 @@ struct DisplacementLanes {
     return clamp01(hn::IfThenElse(first, hn::Add(free.below, free.inside), hn::Add(bound.below, bound.inside)));
   }
 
-  HWY_INLINE Uniform invert(V r, V phi) const {
+  HWY_INLINE Uniform invert(V r, V gap, V phi) const {
     Across a0(d0, whole_angle()), a1(d1, whole_angle());
     balance(a0, a1, phi, set(whole_angle()));
     r = hn::Max(r, set(epsilon));
-    Along b0(d0, a0), b1(d1, a1);
-    balance(b0, b1, r, set(1));
+    const M outer = hn::Gt(hn::Mul(r, r), set(0.5f));
+    Along b0(d0, a0, outer), b1(d1, a1, outer);
+    balance(b0, b1, hn::IfThenElse(outer, gap, r), set(1));
     const Displaced at0{a0.mass, b0.radius, b0.pdf}, at1{a1.mass, b1.radius, b1.pdf};
-    return {mass(a0, a1), mass(b0, b1), displaced_density(w0, w1, set(d0.layout.whole_mass()), at0, at1, r)};
+    const V v = mass(b0, b1);
+    return {mass(a0, a1), hn::IfThenElse(outer, hn::Sub(set(1), v), v),
+            displaced_density(w0, w1, set(d0.layout.whole_mass()), at0, at1, r)};
   }
-  HWY_INLINE V pdf(V r, V phi) const { return invert(r, phi).pdf; }
+  HWY_INLINE V pdf(V r, V gap, V phi) const { return invert(r, gap, phi).pdf; }
 };
 
 }  // namespace GONIO_LANES
