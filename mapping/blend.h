@@ -35,7 +35,7 @@ class Blend {
     const T mass = rows.cumulative(last), target = std::clamp(v, T(0), T(1)) * mass;
     const int j = find_cell_of([&](int k) { return rows.cumulative(k); }, last + 1, target);
     const auto p = RadialPlace<T>::of(radial_cell(rows, j), d0_.r()[j + 1], target - rows.cumulative(j), rest * mass,
-                                      ends_mass(rows.cumulative(j + 1), mass)).within(least_gap<T>);
+                                      ends_mass(rows.cumulative(j + 1), mass)).off_end(least_gap<T>);
     return {{p.r(), phi[i] + a * across.width, p.gap()}, p.density()};
   }
 

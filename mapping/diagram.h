@@ -191,7 +191,7 @@ RadialPlace<T> Diagram<T>::place_at(const Meridian& m, T v, T rest) const noexce
 
 template <class T>
 typename Diagram<T>::Parallel Diagram<T>::parallel_at(const Meridian& m, T v, T rest) const noexcept {
-  const RadialPlace<T> p = place_at(m, v, rest).within(least_gap<T>);
+  const RadialPlace<T> p = place_at(m, v, rest).off_end(least_gap<T>);
   return {p.r(), p.density(), p.gap()};
 }
 

@@ -25,7 +25,7 @@ class Displacement {
   PolarSample<T> sample(T u, T v, T rest) const noexcept {
     v = std::max(smallest_v, v);
     const Meridians m{d0_.meridian_at(u), d1_.meridian_at(u)};
-    const RadialPlace<T> p0 = d0_.place_at(m.first, v, rest), p1 = d1_.place_at(m.second, v, rest);
+    const RadialPlace<T> p0 = d0_.place_at(m.first, v, rest).off_end(0), p1 = d1_.place_at(m.second, v, rest).off_end(0);
     const T r = w0_ * p0.r() + w1_ * p1.r(), gap = w0_ * p0.gap() + w1_ * p1.gap(), phi = w0_ * m.first.phi + w1_ * m.second.phi;
     if (rest < tail || gap < least_gap<T>) {
       const Polar<T> at{std::min(r, 1 - least_gap<T>), phi, std::max(gap, least_gap<T>)};

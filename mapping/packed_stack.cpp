@@ -44,7 +44,7 @@ class PackedStack::Blended {
     }
     const bool ends = b * block + j == stack_.parallels_ - 2 || ends_mass(rows.start(b) + before + cells.mass[j], mass);
     const auto p =
-        RadialPlace<float>::of(cells.cell(j), cells.r[j + 1], inside - before, rest * mass, ends).within(least_gap<float>);
+        RadialPlace<float>::of(cells.cell(j), cells.r[j + 1], inside - before, rest * mass, ends).off_end(least_gap<float>);
     return {{p.r(), phi[0] + a * across.width, p.gap()}, p.density()};
   }
 

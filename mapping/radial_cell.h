@@ -91,10 +91,13 @@ struct RadialPlace {
   T r() const noexcept { return cell.radius(s); }
   T gap() const noexcept { return cell.gap(s); }
   T density() const noexcept { return cell.density(s); }
-  /// The place, or the one at the gap `least` where that is further from the horizon.
-  RadialPlace within(T least) const noexcept {
-    return {cell, gap() < least ? std::min(((1 - cell.r0) - least) / cell.h, T(1)) : s};
+  /// The place or, if its cell is counted from its end, one at least `at_horizon` from an end at the horizon and
+  /// `inside` from an end elsewhere: where the density falls to 0 there, radii must hold the distance.
+  RadialPlace off_end(T at_horizon) const noexcept {
+    const T least = cell.r0 < 1 ? inside : at_horizon;
+    return {cell, -s * cell.h < least && cell.h < 0 ? std::min(-least / cell.h, T(1)) : s};
   }
+  static constexpr T inside = 256 * std::numeric_limits<T>::epsilon();
 };
 
 }  // namespace gonio

@@ -47,11 +47,11 @@ class SphereDiagram {
     T phi;     ///< [rad] in [0, 2 pi]
     T mass;    ///< integral of the pdf along the meridian: d(mass)/dphi
     int j;     ///< between parallels j and j + 1
-    T s;       ///< 0 at parallel j, 1 at j + 1, linear in the radius of the hemisphere's chart
-    T radius;  ///< sqrt(1 - |cos theta|) in [0, 1]
+    T radius;  ///< sqrt(1 - |cos theta|) in [0, 1]: from the pole of the place's own hemisphere
+    T gap;     ///< 1 - radius, with digits next to the equator that radius has not
   };
 
-  /// The map. u and v in [0, 1]; other values are clamped.
+  /// The map. u and v in [0, 1]; other values are clamped. Of a hemispherical grid, the gap is at least `least_gap`.
   Place at(T u, T v) const noexcept;
   /// The place of a direction. @param w a unit vector; below the equator of a hemispherical grid
   /// the
@@ -71,6 +71,9 @@ class SphereDiagram {
 
   /// True if the grid covers one hemisphere.
   bool hemisphere() const noexcept { return equator_ == parallels_ - 1; }
+  /// Directions nearer to the edge of a hemispherical grid count as that far from it. A direction that was turned
+  /// in space holds its distance to the edge to a rounding error of 1: this is some hundred of them.
+  static constexpr T least_gap = 32 * std::numeric_limits<T>::epsilon();
   int meridians() const noexcept { return meridians_; }
   int parallels() const noexcept { return parallels_; }
   /// What one unit of the grid's density is in units of pdf().
@@ -94,6 +97,8 @@ class SphereDiagram {
     const T r0 = radius()[p.j], r1 = radius()[p.j + 1];
     return p.j < equator_ ? RadialCell<T>{r0, r1 - r0, d0, d1} : RadialCell<T>{r1, r0 - r1, d1, d0};
   }
+  /// The radius at which it ends, towards the equator.
+  T end_radius(int j) const noexcept { return radius()[j < equator_ ? j + 1 : j]; }
 
   int meridians_, parallels_, equator_;
   double scale_;
@@ -103,43 +108,34 @@ class SphereDiagram {
 
 template <class T>
 typename SphereDiagram<T>::Place SphereDiagram<T>::at(T u, T v) const noexcept {
+  // Keeps draws off the poles themselves, where a density that falls to 0 is 0.
+  constexpr T least = std::numeric_limits<T>::epsilon() * std::numeric_limits<T>::epsilon();
   const DiskPoint<T> disk = square_to_disk(std::clamp(u, T(0), T(1)), std::clamp(v, T(0), T(1)));
+  const T r2 = std::max(least, disk.r2), rest = std::max(least, disk.rest);
   Place p;
   // M_C: the meridian, as Diagram::meridian_at().
   const T* below = cumulative_phi();
   const T target_phi = disk.turn * below[meridians_ - 1];
   p.i = find_cell(below, meridians_, target_phi);
-  const T m0 = meridian_mass(p.i), m1 = meridian_mass(p.i + 1), sum = m0 + m1;
+  const T m0 = meridian_mass(p.i), m1 = meridian_mass(p.i + 1);
   const T width = phi()[p.i + 1] - phi()[p.i];
-  p.a = 0;
-  if (sum > 0) {
-    const T x = std::clamp(2 * (target_phi - below[p.i]) / (width * sum), T(0), T(1));
-    const T n0 = m0 / sum;
-    const T denominator = n0 + std::sqrt(std::max(n0 * n0 + (1 - 2 * n0) * x, T(0)));
-    p.a = denominator > 0 ? std::min(x / denominator, T(1)) : T(0);
-  }
+  p.a = AzimuthCell<T>{width, m0, m1}.invert(target_phi - below[p.i]);
   p.phi = phi()[p.i] + p.a * width;
   p.mass = (1 - p.a) * m0 + p.a * m1;
   // M_D: the parallel, from pole to pole.
-  const T target = disk.r2 * p.mass;
+  const T target = r2 * p.mass;
   const T *u0 = cumulative(p.i), *u1 = cumulative(p.i + 1);
-  p.j = 0;
-  for (int length = parallels_ - 1; length > 1;) {
-    const int half = length / 2;
-    p.j = (1 - p.a) * u0[p.j + half] + p.a * u1[p.j + half] < target ? p.j + half : p.j;
-    length -= half;
-  }
-  // Beyond the equator the cell runs backwards, and so does the fraction. One inversion for both:
-  // which of them is random, and a branch on it would be mispredicted every other time.
-  const bool near = p.j < equator_;
+  const auto before = [&](int j) { return (1 - p.a) * u0[j] + p.a * u1[j]; };
+  p.j = find_cell_of(before, parallels_, target);
+  // The mass of the cell on either side of the draw. In the last cell with mass, that behind it is known to all digits.
   const RadialCell<T> c = cell(p);
-  const T mass = c.mass(1);
-  const T inside = target - ((1 - p.a) * u0[p.j] + p.a * u1[p.j]);
-  const T part = mass > 0 ? std::clamp(inside / mass, T(0), T(1)) : T(0);
-  const T fraction = near ? part : 1 - part;
-  const T s = fraction > 0 ? c.invert(fraction) : T(0);
-  p.s = near ? s : 1 - s;
-  p.radius = c.r0 + s * c.h;
+  const bool last = ends_mass(before(p.j + 1), p.mass);
+  const T inside = target - before(p.j), behind = last ? rest * p.mass : c.mass(1) - inside;
+  // Beyond the equator the cell runs backwards.
+  const bool near = p.j < equator_;
+  auto place = RadialPlace<T>::of(c, end_radius(p.j), near ? inside : behind, behind, near && last).off_end(least_gap);
+  if (!near && last && c.r0 > 0) place.s = std::max(place.s, std::min(RadialPlace<T>::inside / c.h, T(1)));
+  p.radius = place.r(), p.gap = std::max(place.gap(), T(0));
   return p;
 }
 
@@ -156,6 +152,8 @@ typename SphereDiagram<T>::Place SphereDiagram<T>::place_of(const Vec3<T>& w) co
   p.radius = w.z < 0 && near
                  ? T(1)
                  : std::min(std::sqrt((w.x * w.x + w.y * w.y) / (1 + std::abs(w.z))), T(1));
+  p.gap = w.z < 0 && near ? T(0) : std::abs(w.z) / (1 + p.radius);
+  if (hemisphere()) p.gap = std::max(least_gap, p.gap);
   const T* r = radius();
   if (near) {
     p.j = find_cell(r, equator_ + 1, p.radius);
@@ -168,7 +166,6 @@ typename SphereDiagram<T>::Place SphereDiagram<T>::place_of(const Vec3<T>& w) co
     }
     p.j = first;
   }
-  p.s = std::clamp((p.radius - r[p.j]) / (r[p.j + 1] - r[p.j]), T(0), T(1));
   return p;
 }
 
@@ -183,29 +180,35 @@ SquarePoint<T> SphereDiagram<T>::square_of(const Place& p) const noexcept {
   // Counted from the line of the cell that lies nearer to its pole, where little mass is taken
   // from.
   const int from = near ? p.j : p.j + 1;
-  const T mass = (1 - p.a) * u0[from] + p.a * u1[from] + (near ? c.mass(p.s) : -c.mass(1 - p.s));
+  const T s = std::clamp((p.radius - c.r0) / c.h, T(0), T(1));
+  const T mass = (1 - p.a) * u0[from] + p.a * u1[from] + (near ? c.mass(s) : -c.mass(s));
   const T r2 = p.mass > 0 ? std::clamp(mass / p.mass, T(0), T(1)) : T(0);
   return disk_to_square(DiskPoint<T>{turn < 1 ? turn : T(0), r2});
 }
 
 template <class T>
 Vec3<T> SphereDiagram<T>::direction(const Place& p) const noexcept {
-  Vec3<T> w = polar_to_direction(Polar<T>{p.radius, p.phi});
+  Vec3<T> w = polar_to_direction(Polar<T>{p.radius, p.phi, p.gap});
   if (p.j >= equator_) w.z = -w.z;
   return w;
 }
 
 template <class T>
 T SphereDiagram<T>::pdf(const Place& p) const noexcept {
-  return (1 - p.s) * density_at(p, p.j) + p.s * density_at(p, p.j + 1);
+  return cell(p).density_at(p.radius, p.gap, 1 - end_radius(p.j));
 }
 
 template <class T>
 T SphereDiagram<T>::theta_linear(const Place& p) const noexcept {
-  const T from_pole = radius_to_theta(p.radius);
-  const T angle = p.j < equator_ ? from_pole : pi<T> - from_pole;
-  const T t = std::clamp((angle - theta()[p.j]) / (theta()[p.j + 1] - theta()[p.j]), T(0), T(1));
-  return (1 - t) * density_at(p, p.j) + t * density_at(p, p.j + 1);
+  // In the hemisphere's own chart, from the end of the cell that is nearer: poles and equator are exact.
+  const bool near = p.j < equator_;
+  const RadialCell<T> c = cell(p);
+  const T start = near ? theta()[p.j] : pi<T> - theta()[p.j + 1], end = near ? theta()[p.j + 1] : pi<T> - theta()[p.j];
+  const bool at_equator = (near ? p.j + 1 : p.j) == equator_;
+  const T angle = radius_to_theta(p.radius), width = end - start;
+  const T s = std::clamp((angle - start) / width, T(0), T(1));
+  const T t = std::clamp((at_equator ? elevation(p.gap) : end - angle) / width, T(0), T(1));
+  return t < T(0.5) ? (1 - t) * c.d1 + t * c.d0 : c.density(s);
 }
 
 extern template class SphereDiagram<float>;

@@ -88,10 +88,10 @@ HWY_INLINE void find_parallels(const BatchLayout& layout, std::size_t count, Map
 }
 
 /// Diagram::meridian_at() and parallel_at() of `count` elements with their `block` and `target`, the mass before the meridian;
-/// v(k) is the other uniform number of the elements from k on, rest(k) is 1 - v(k).
-template <bool within_rim, std::size_t size, class SourceOf, class V0, class V1>
+/// v(k) is the other uniform number of the elements from k on, rest(k) is 1 - v(k). Draws are at least `at_horizon` from there.
+template <std::size_t size, class SourceOf, class V0, class V1>
 HWY_INLINE void draw_map(const BatchLayout& layout, std::size_t count, MapBlock<size>& map, const SourceOf& source_of, const V0& v,
-                         const V1& rest) {
+                         const V1& rest, float at_horizon) {
   const D d;
   find_meridian_groups(layout, count, map, source_of);
   find_meridians(layout, count, map, source_of);
@@ -112,7 +112,7 @@ HWY_INLINE void draw_map(const BatchLayout& layout, std::size_t count, MapBlock<
     load4(map.cell + 4 * k, c.r0, r1, c.d0, c.d1);
     c.h = hn::Sub(r1, c.r0);
     CellDraw draw(c, r1, hn::Load(d, map.below + k), hn::Load(d, map.mass + k), v(k), rest(k));
-    if constexpr (within_rim) draw.keep_within(rim);
+    draw.keep_off_end(at_horizon);
     hn::Store(draw.r(), d, map.r + k), hn::Store(draw.gap(), d, map.gap + k), hn::Store(draw.density(), d, map.pdf + k);
   }
 }
@@ -131,14 +131,14 @@ HWY_INLINE void draw_single(const BatchLayout& layout, std::size_t count, const 
   const D d;
   MapBlock<block_size> map;
   std::copy_n(disk.block, count, map.block), std::copy_n(disk.target, count, map.target);
-  draw_map<true>(layout, count, map,
+  draw_map(layout, count, map,
            [&](std::size_t k) GONIO_INLINED {
              const float* block = layout.values() + map.block[k];
              if constexpr (blended) return TwoSources{block, layout.stride, 1 - alpha[k], alpha[k]};
              else return OneSource{block};
            },
            [&](std::size_t k) GONIO_INLINED { return hn::Load(d, disk.v + k); },
-           [&](std::size_t k) GONIO_INLINED { return hn::Load(d, disk.rest + k); });
+           [&](std::size_t k) GONIO_INLINED { return hn::Load(d, disk.rest + k); }, rim);
   std::copy_n(map.r, count, disk.r), std::copy_n(map.gap, count, disk.gap);
   std::copy_n(map.phi, count, disk.phi), std::copy_n(map.pdf, count, disk.pdf);
 }
@@ -157,9 +157,9 @@ HWY_INLINE void draw_displacement(const BatchLayout& layout, std::size_t count, 
     hn::Store(hn::Max(hn::Load(d, disk.v + k), least), d, disk.v + k);
   }
   const auto shared = [&](const float* x, std::size_t k) GONIO_INLINED { return hn::Load(d, x + (k < count ? k : k - count)); };
-  draw_map<false>(layout, 2 * count, map, [&](std::size_t k) GONIO_INLINED { return OneSource{layout.values() + map.block[k]}; },
-                  [&](std::size_t k) GONIO_INLINED { return shared(disk.v, k); },
-                  [&](std::size_t k) GONIO_INLINED { return shared(disk.rest, k); });
+  draw_map(layout, 2 * count, map, [&](std::size_t k) GONIO_INLINED { return OneSource{layout.values() + map.block[k]}; },
+           [&](std::size_t k) GONIO_INLINED { return shared(disk.v, k); },
+           [&](std::size_t k) GONIO_INLINED { return shared(disk.rest, k); }, 0);
   for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
     const V w1 = hn::Load(d, alpha + k), w0 = hn::Sub(set(1), w1);
     const auto first = [&](const float* x) GONIO_INLINED { return hn::Load(d, x + k); };

@@ -96,7 +96,7 @@ HWY_INLINE InDiagrams draw_maps(const BatchLayout& layout, const Source& source0
   const V end = second_lanes(r0.r, r1.r);
   c.h = hn::Sub(end, c.r0);
   CellDraw draw(c, end, lanes(r0.below, r1.below), mass, v, rest);
-  if constexpr (!both) draw.keep_within(rim);
+  draw.keep_off_end(both ? 0 : rim);
   return {mass, hn::MulAdd(a, width, phi0), draw.r(), draw.gap(), draw.density()};
 }
 

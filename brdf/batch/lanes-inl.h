@@ -230,12 +230,12 @@ struct CellDraw {
   HWY_INLINE V r() const { return cell.radius(s); }
   HWY_INLINE V gap() const { return cell.gap(s); }
   HWY_INLINE V density() const { return cell.density(s); }
-  /// RadialPlace::within(rim).
-  HWY_INLINE void keep_within(float rim) {
-    const M beyond = hn::Lt(gap(), set(rim));
+  /// RadialPlace::off_end().
+  HWY_INLINE void keep_off_end(float at_horizon) {
+    const V least = hn::IfThenElse(hn::Lt(cell.r0, set(1)), set(256 * 1.1920929e-7f), set(at_horizon));
+    const M beyond = hn::And(hn::Lt(hn::Neg(hn::Mul(s, cell.h)), least), hn::Lt(cell.h, zero()));
     if (HWY_LIKELY(hn::AllFalse(D(), beyond))) return;
-    const V way = hn::Sub(hn::Sub(set(1), cell.r0), set(rim));
-    s = hn::IfThenElse(beyond, clamp01(hn::Div(way, cell.h)), s);
+    s = hn::IfThenElse(beyond, clamp01(hn::Neg(hn::Div(least, cell.h))), s);
   }
 };
 

@@ -29,10 +29,10 @@ std::string text(const glm::vec2& u) {
   return out.str();
 }
 
-bool good(const BsdfSample& s) {
+bool good(const BsdfSample& s, Domain domain) {
   const double length2 = static_cast<double>(s.wo.x) * s.wo.x + static_cast<double>(s.wo.y) * s.wo.y + static_cast<double>(s.wo.z) * s.wo.z;
   const float least = std::min({s.weight.x, s.weight.y, s.weight.z});
-  return std::abs(length2 - 1) < 1e-5 && s.wo.z > 0 && s.pdf > 0 && std::isfinite(s.pdf) && least >= 0 &&
+  return std::abs(length2 - 1) < 1e-5 && (s.wo.z > 0 || domain == Domain::sphere) && s.pdf > 0 && std::isfinite(s.pdf) && least >= 0 &&
          std::isfinite(s.weight.x + s.weight.y + s.weight.z);
 }
 
@@ -54,7 +54,7 @@ EdgeScan scan_edges(const Subject& subject, double theta_i, const EdgeOptions& o
     const auto s = subject.sample(wi, u);
     if (!s) {
       ++scan.empty;
-    } else if (!good(*s)) {
+    } else if (!good(*s, options.domain)) {
       ++scan.bad, scan.where_bad = text(u);
     } else {
       const double weight = luminance(s->weight);

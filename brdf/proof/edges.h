@@ -11,6 +11,7 @@ struct EdgeOptions {
   int along = 64;     ///< places along each side of the square, at each distance from it
   int interior = 128;  ///< the interior is looked at in interior x interior cells, one draw in each
   std::uint32_t seed = 1;
+  Domain domain = Domain::hemisphere;  ///< what directions fill: of luminaires the sphere
 };
 
 /// What a sampler does next to the sides of the unit square.
