@@ -1,4 +1,5 @@
 #include <gonio/brdf/baseline.h>
+#include <gonio/brdf/frame.h>
 
 #include <algorithm>
 #include <cmath>
@@ -19,18 +20,18 @@ BsdfSample weighted(const BrdfTable& table, const glm::vec3& wi, const glm::vec3
 }  // namespace
 
 std::optional<BsdfSample> UniformSampler::sample(const glm::vec3& wi, const glm::vec2& u) const noexcept {
-  if (!(wi.z > 0)) return std::nullopt;
+  if (!(is_above(wi) && std::isfinite(u.x + u.y))) return std::nullopt;
   const DiskPoint<float> disk = square_to_disk(u.x, u.y);
   const float r = std::sqrt(std::min(disk.r2, largest_radius2));
   return weighted(*table_, wi, polar_to_direction(Polar<float>{r, two_pi * disk.turn}), 1 / two_pi);
 }
 
 float UniformSampler::pdf(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
-  return wi.z > 0 && wo.z > 0 ? 1 / two_pi : 0;
+  return is_above(wi) && is_above(wo) ? 1 / two_pi : 0;
 }
 
 std::optional<BsdfSample> CosineSampler::sample(const glm::vec3& wi, const glm::vec2& u) const noexcept {
-  if (!(wi.z > 0)) return std::nullopt;
+  if (!(is_above(wi) && std::isfinite(u.x + u.y))) return std::nullopt;
   const DiskPoint<float> disk = square_to_disk(u.x, u.y);
   const float sin2 = std::min(disk.r2, largest_radius2), sin_theta = std::sqrt(sin2);
   const float phi = two_pi * disk.turn;
@@ -39,7 +40,7 @@ std::optional<BsdfSample> CosineSampler::sample(const glm::vec3& wi, const glm::
 }
 
 float CosineSampler::pdf(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
-  return wi.z > 0 && wo.z > 0 ? wo.z / pi<float> : 0;
+  return is_above(wi) && is_above(wo) ? wo.z / pi<float> : 0;
 }
 
 RglSampler::RglSampler(std::shared_ptr<const BrdfTable> table)
@@ -49,14 +50,14 @@ RglSampler::RglSampler(std::shared_ptr<const BrdfTable> table)
 }
 
 std::optional<BsdfSample> RglSampler::sample(const glm::vec3& wi, const glm::vec2& u) const noexcept {
-  if (!(wi.z > 0)) return std::nullopt;
+  if (!(is_above(wi) && std::isfinite(u.x + u.y))) return std::nullopt;
   const auto drawn = rgl_->sample(wi, u.x, u.y);
   if (!drawn || !(drawn->pdf > 0)) return std::nullopt;
   return BsdfSample{drawn->wo, drawn->pdf, drawn->f_r * (drawn->wo.z / drawn->pdf)};
 }
 
 float RglSampler::pdf(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
-  return wi.z > 0 && wo.z > 0 ? rgl_->pdf(wi, wo) : 0;
+  return is_above(wi) && is_above(wo) ? rgl_->pdf(wi, wo) : 0;
 }
 
 }  // namespace gonio

@@ -11,13 +11,17 @@
 namespace gonio {
 
 /// A material that needs its table no more: the stack's densities and its Colour are the BSDF,
-/// f_r cos theta_o = W pdf. sample(), pdf() and eval() agree to rounding, whatever the distance to the table.
+/// f_r = W pdf / max(cos theta_o, min_cosine). sample(), pdf() and eval() agree to rounding, whatever the distance to
+/// the table.
 /// The interface, the frame and what happens below the horizon are those of Sampler.
 ///
 /// Thread safety: immutable; every const member may be called concurrently. No member but the
 /// constructor allocates or locks.
 class CompactBsdf {
  public:
+  /// Next to the horizon W pdf does not fall to 0 as fast as the cosine does. There f_r stays what it is here.
+  static constexpr float min_cosine = 1e-3f;
+
   /// @throws Error if `diagrams` cannot be held like that, or if `colour` is empty.
   CompactBsdf(const StackGrid& diagrams, Interpolation interpolation, Storage storage, Colour colour);
 

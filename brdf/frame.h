@@ -7,6 +7,9 @@
 
 namespace gonio {
 
+/// Whether `w` is a direction above the horizon; not if a component is NaN or infinite.
+inline bool is_above(const glm::vec3& w) noexcept { return w.z > 0 && std::isfinite(w.x + w.y + w.z); }
+
 /// The incident direction as the diagrams see it: its polar angle, and the rotation about the normal
 /// that puts its azimuth on +x. At normal incidence, where there is no azimuth, +x itself is taken.
 struct IncidentFrame {

@@ -14,6 +14,9 @@ namespace {
 
 constexpr float pi = 3.14159265358979323846f;
 
+// Of the unit square: draws nearer to its sides have their pdf computed from their direction.
+constexpr float edge = 0x1p-12f;
+
 // Elevation and azimuth of a direction that need not have unit length.
 float theta_of(const glm::vec3& w) noexcept {
   return fast_atan2(std::sqrt(w.x * w.x + w.y * w.y), w.z);
@@ -21,6 +24,12 @@ float theta_of(const glm::vec3& w) noexcept {
 
 // The file's chart of directions: u_theta = sqrt(2 theta / pi), u_phi = (phi + pi) / (2 pi).
 float u_theta_of(float theta) noexcept { return std::sqrt(theta * (2.0f / pi)); }
+
+// Solid angle of the normals per unit area of the chart. The authors' loader lets it fall to 1e-6 and no further: next to
+// the pole, where the densities of the chart fall to 0 with it, the pdf would then be too small by any factor.
+float area_of_normals(float u_theta, float sine) noexcept {
+  return std::max(2.0f * pi * pi * u_theta * sine, 1e-20f);
+}
 
 float bilinear(const RglFile::Grid& grid, float x, float y) noexcept {
   const Lerp lx = lerp_clamped(x * static_cast<float>(grid.width - 1), grid.width);
@@ -92,8 +101,7 @@ RglTable::Normal RglTable::half_vector(const glm::vec3& wi, const glm::vec3& wo)
   const float m_xy = std::sqrt(m.x * m.x + m.y * m.y);
   const float u_theta = u_theta_of(fast_atan2(m_xy, m.z));
   const float u_phi = phi * (0.5f / pi) + 0.5f;
-  const float sine = m_xy / glm::length(m);
-  return {u_theta, u_phi, std::max(2.0f * pi * pi * u_theta * sine, 1e-6f)};
+  return {u_theta, u_phi, area_of_normals(u_theta, m_xy / glm::length(m))};
 }
 
 glm::vec3 RglTable::colour_at(const Lerp& slice, float x, float y) const noexcept {
@@ -155,8 +163,15 @@ std::optional<RglTable::Sample> RglTable::sample(const glm::vec3& wi, float u1,
   const glm::vec3 wo = glm::normalize(2.0f * cosine * m - wi);
   if (!(cosine > 0.0f && wo.z > 0.0f)) return std::nullopt;
 
-  const Normal normal{chart.x, chart.y, std::max(2.0f * pi * pi * chart.x * sine, 1e-6f)};
+  const Normal normal{chart.x, chart.y, area_of_normals(chart.x, sine)};
   const float density = place.density * chart.density / (normal.jacobian * 4.0f * cosine);
+  // Where a density of the chain falls to 0 at an edge, what the warps say of a place on the edge is not what they say of
+  // the direction, which is rounded.
+  if (std::min({u1, 1.0f - u1, u2, 1.0f - u2}) < edge) {
+    const float rounded = pdf(wi, wo);
+    if (!(rounded > 0.0f)) return std::nullopt;
+    return Sample{wo, rounded, eval(wi, wo)};
+  }
   return Sample{wo, density,
                 value_at(normal, theta_i, slice, place.x, place.y) / std::max(wo.z, min_cosine)};
 }

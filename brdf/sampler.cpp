@@ -1,5 +1,7 @@
 #include <gonio/brdf/sampler.h>
 
+#include <cmath>
+
 #include <gonio/brdf/fit_compact.h>
 #include <gonio/brdf/frame.h>
 
@@ -18,7 +20,7 @@ Sampler::Sampler(std::shared_ptr<const BrdfTable> table, const StackGrid& diagra
     : stack_(diagrams, interpolation, storage), table_(std::move(table)) {}
 
 std::optional<BsdfSample> Sampler::sample(const glm::vec3& wi, const glm::vec2& u) const noexcept {
-  if (!(wi.z > 0)) return std::nullopt;
+  if (!(is_above(wi) && std::isfinite(u.x + u.y))) return std::nullopt;
   const IncidentFrame frame(wi);
   const auto drawn = stack_.sample(frame.theta_i, u.x, u.y);
   if (!(drawn.pdf > 0 && drawn.wo.z > 0)) return std::nullopt;
@@ -27,7 +29,7 @@ std::optional<BsdfSample> Sampler::sample(const glm::vec3& wi, const glm::vec2& 
 }
 
 float Sampler::pdf(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
-  if (!(wi.z > 0 && wo.z > 0)) return 0;
+  if (!(is_above(wi) && is_above(wo))) return 0;
   const IncidentFrame frame(wi);
   return stack_.pdf(frame.theta_i, frame.to_diagram(wo));
 }

@@ -1,4 +1,5 @@
 #include <gonio/brdf/bytes.h>
+#include <gonio/brdf/frame.h>
 #include <gonio/brdf/sniff.h>
 #include <gonio/brdf/table.h>
 #include <gonio/mapping/error.h>
@@ -38,7 +39,7 @@ BrdfTable load(const std::filesystem::path& path, const CellPolicies& policies) 
 }  // namespace
 
 glm::vec3 BrdfTable::eval(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
-  if (!(wi.z > 0.0f && wo.z > 0.0f)) return glm::vec3(0.0f);
+  if (!(is_above(wi) && is_above(wo))) return glm::vec3(0.0f);
   return std::visit([&](const auto& table) { return table.eval(wi, wo); }, data_);
 }
 

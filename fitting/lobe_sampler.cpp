@@ -84,7 +84,7 @@ float LobeSampler::density(const Node& node, const glm::vec3& wi,
 
 std::optional<BsdfSample> LobeSampler::sample(const glm::vec3& wi,
                                               const glm::vec2& u) const noexcept {
-  if (!(wi.z > 0)) return std::nullopt;
+  if (!(is_above(wi) && std::isfinite(u.x + u.y))) return std::nullopt;
   const IncidentFrame frame(wi);
   const glm::vec3 wi_diagram = frame.to_diagram(wi);
   const Node node = at(frame.theta_i);
@@ -104,7 +104,7 @@ std::optional<BsdfSample> LobeSampler::sample(const glm::vec3& wi,
 }
 
 float LobeSampler::pdf(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
-  if (!(wi.z > 0 && wo.z > 0)) return 0;
+  if (!(is_above(wi) && is_above(wo))) return 0;
   const IncidentFrame frame(wi);
   return density(at(frame.theta_i), frame.to_diagram(wi), frame.to_diagram(wo));
 }

@@ -1,6 +1,7 @@
 #include <gonio/brdf/batch/batch_sampler.h>
 #include <gonio/brdf/batch/one_lane.h>
 #include <gonio/brdf/batch/targets.h>
+#include <gonio/brdf/frame.h>
 #include <gonio/mapping/monotone_root.h>
 
 #define GONIO_LANE_CAP 2
@@ -114,7 +115,7 @@ HWY_INLINE InDiagrams draw_displaced(const BatchLayout& layout, const float* blo
 
 /// BatchSampler::sample(), of direction and pdf alone where there is no colour.
 bool draw(const BatchLayout& layout, const BatchColour* colour, const glm::vec3& wi, const glm::vec2& u, BsdfSample& out) {
-  if (!(wi.z > 0)) return false;
+  if (!(gonio::is_above(wi) && std::isfinite(u.x + u.y))) return false;
   const Frame frame({set(wi.x), set(wi.y), set(wi.z)});
   const PlaceOfOne place = place_of_one(layout.angles, frame.i);
   if (colour != nullptr) {
@@ -140,6 +141,7 @@ bool draw(const BatchLayout& layout, const BatchColour* colour, const glm::vec3&
   const Drawn drawn = from_disk(layout, frame.i.theta, at.r, at.gap, at.phi, uv.sign(), at.pdf);
   const Direction wo = to_surface(frame.cos_phi, frame.sin_phi, drawn.wo);
   out.wo = {hn::GetLane(wo.x), hn::GetLane(wo.y), hn::GetLane(wo.z)}, out.pdf = hn::GetLane(drawn.pdf);
+  if (colour != nullptr) out.weight *= std::min(out.wo.z * (1 / CompactBsdf::min_cosine), 1.0f);
   return out.pdf > 0 && out.wo.z > 0;
 }
 #else

@@ -23,16 +23,20 @@ HWY_INLINE Incidence incidence(V theta_i) {
   return {theta, hn::Mul(set(1.41421356f), sin_cos(hn::Mul(set(0.5f), theta)).sin)};
 }
 
+/// is_above() of frame.h.
+HWY_INLINE M is_above(const Direction& w) { return hn::And(hn::Gt(w.z, zero()), hn::IsFinite(hn::Add(hn::Add(w.x, w.y), w.z))); }
+
 /// IncidentFrame, and its to_surface(). The angle by way of the radius, as radius_to_theta(): sooner at hand than an arc tangent.
 struct Frame {
   Incidence i;
   V cos_phi, sin_phi;
   M above;
 
-  explicit HWY_INLINE Frame(const Direction& wi) : above(hn::Gt(wi.z, zero())) {
+  explicit HWY_INLINE Frame(const Direction& wi) : above(is_above(wi)) {
     const V one = set(1), sine2 = hn::MulAdd(wi.x, wi.x, hn::Mul(wi.y, wi.y));
     const V steep = hn::Div(sine2, hn::Add(one, hn::Max(wi.z, zero())));  // direction_to_polar()
-    i.r = hn::Min(hn::Sqrt(hn::IfThenElse(hn::Lt(wi.z, set(0.5f)), hn::Sub(one, wi.z), steep)), one);
+    const V r2 = hn::IfThenElse(hn::Lt(wi.z, set(0.5f)), hn::Sub(one, wi.z), steep);
+    i.r = hn::IfThenElseZero(above, hn::Min(hn::Sqrt(r2), one));  // a number whatever wi is: places are found by it
     i.theta = hn::Mul(i.r, polynomial(hn::Mul(i.r, i.r), 1.414213546f, 1.178531667e-1f, 2.647448250e-2f, 8.216730964e-3f, 1.478859820e-3f,
                                       3.338417016e-3f, -1.990642964e-3f, 1.211737771e-3f));
     const M tilted = hn::Gt(sine2, zero());

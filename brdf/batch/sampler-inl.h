@@ -33,10 +33,14 @@ HWY_INLINE void draw_kernel(const BatchLayout& layout, const BatchColour* colour
     draw_stack(layout, elements, places, theta_i, x[3], x[4], y[0], y[1], y[2], y[3]);
     for (std::size_t k = 0; k < elements; k += hn::Lanes(d)) {
       const V pdf = hn::LoadU(d, y[3] + k), z = hn::LoadU(d, y[2] + k);
-      const M valid = hn::And(hn::Gt(hn::LoadU(d, x[2] + k), zero()), hn::And(hn::Gt(pdf, zero()), hn::Gt(z, zero())));
+      const M asked = hn::And(is_above({hn::LoadU(d, x[0] + k), hn::LoadU(d, x[1] + k), hn::LoadU(d, x[2] + k)}),
+                              hn::IsFinite(hn::Add(hn::LoadU(d, x[3] + k), hn::LoadU(d, x[4] + k))));
+      const M valid = hn::And(asked, hn::And(hn::Gt(pdf, zero()), hn::Gt(z, zero())));
       const Direction wo = to_surface(hn::Load(d, cos_phi + k), hn::Load(d, sin_phi + k), {hn::LoadU(d, y[0] + k), hn::LoadU(d, y[1] + k), z});
       hn::StoreU(hn::IfThenElseZero(valid, wo.x), d, y[0] + k), hn::StoreU(hn::IfThenElseZero(valid, wo.y), d, y[1] + k);
-      for (int i = 2; i < outputs; ++i) hn::StoreU(hn::IfThenElseZero(valid, hn::LoadU(d, y[i] + k)), d, y[i] + k);
+      hn::StoreU(hn::IfThenElseZero(valid, z), d, y[2] + k), hn::StoreU(hn::IfThenElseZero(valid, pdf), d, y[3] + k);
+      const V share = hn::IfThenElseZero(valid, hn::Min(hn::Mul(z, set(1 / CompactBsdf::min_cosine)), set(1)));
+      for (int i = 4; i < outputs; ++i) hn::StoreU(hn::IfThenElseZero(valid, hn::Mul(hn::LoadU(d, y[i] + k), share)), d, y[i] + k);
     }
   });
 }
@@ -45,7 +49,7 @@ HWY_INLINE void pdf_kernel(const BatchLayout& layout, std::size_t count, const f
   for_vectors<6, 1>(count, in, out, [&](const V(&x)[6], V(&y)[1]) GONIO_INLINED {
     const Frame frame({x[0], x[1], x[2]});
     const V pdf = pdf_stack(layout, place_of(layout.angles, frame.i), frame.i.theta, frame.to_diagram({x[3], x[4], x[5]}));
-    y[0] = hn::IfThenElseZero(hn::And(frame.above, hn::Gt(x[5], zero())), pdf);
+    y[0] = hn::IfThenElseZero(hn::And(frame.above, is_above({x[3], x[4], x[5]})), pdf);
   });
 }
 
@@ -58,9 +62,9 @@ HWY_INLINE void eval_kernel(const BatchLayout& layout, const BatchColour& colour
       const Frame frame({hn::LoadU(d, x[0] + k), hn::LoadU(d, x[1] + k), hn::LoadU(d, x[2] + k)});
       const Direction wo = frame.to_diagram({hn::LoadU(d, x[3] + k), hn::LoadU(d, x[4] + k), hn::LoadU(d, x[5] + k)});
       const Inverted at = invert_stack(layout, place_of(layout.angles, frame.i), frame.i.theta, wo);
-      const M valid = hn::And(hn::And(frame.above, hn::Gt(wo.z, zero())), hn::Gt(at.pdf, zero()));
+      const M valid = hn::And(hn::And(frame.above, is_above(wo)), hn::Gt(at.pdf, zero()));
       hn::Store(frame.i.theta, d, theta_i + k), hn::Store(frame.i.r, d, r + k), hn::Store(at.u, d, u + k), hn::Store(at.v, d, v + k);
-      hn::Store(hn::IfThenElseZero(valid, hn::Div(at.pdf, wo.z)), d, scale + k);
+      hn::Store(hn::IfThenElseZero(valid, hn::Div(at.pdf, hn::Max(wo.z, set(CompactBsdf::min_cosine)))), d, scale + k);
     }
     find_colours(colour, elements, Places(colour.angles, elements, theta_i, r), u, v, y[0], y[1], y[2]);
     for (float* channel : y)
