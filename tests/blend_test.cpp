@@ -53,7 +53,7 @@ TEST(Blend, IsTheDiagramOfTheBlendedDensities) {
         for (double v = 0; v <= 1; v += 0.03125) {
           const auto m = right.meridian_at(u);
           const auto p = right.parallel_at(m, v);
-          const auto s = blend.sample(u, v);
+          const auto s = blend.sample(u, v, 1 - v);
           ASSERT_NEAR(s.at.phi, m.phi, 1e-12);
           ASSERT_NEAR(s.at.r, p.r, 1e-12);
           ASSERT_NEAR(s.pdf, p.pdf, 1e-12);
