@@ -80,7 +80,7 @@ struct Fit {
   FitSummary summary;
 };
 
-/// Fits the lobes of `form` to f. The parameters that `form` holds do not matter, only which lobes
+/// Fits the lobes of `form` to f, where f is not NaN. The parameters that `form` holds do not matter, only which lobes
 /// it has and which Fresnel term.
 ///
 /// All prefixes are fitted: the diffuse lobes with one specular lobe, with two, and so on; entry k
@@ -90,7 +90,7 @@ struct Fit {
 /// together by Ceres' trust region with bounds and derivatives from the lobes themselves. Never
 /// prints. Deterministic.
 /// @throws Error if `form` has no lobe, an option is out of its range, or f is 0 or not finite
-/// everywhere.
+/// at every pair of directions that is looked at.
 std::vector<Fit> fit_stages(const BrdfFunction& f, const LobeModel& form,
                             const FitOptions& options = {});
 
