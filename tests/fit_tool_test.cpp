@@ -115,6 +115,29 @@ TEST_F(FitToolTest, OptionsReachTheFit) {
       << help;
 }
 
+// What the reader filled in is neither fitted nor compared, and info says what there is.
+TEST_F(FitToolTest, MeasuredToThirtyDegrees) {
+  for (const char* file : {"a.binary", "a.mbsdf"}) {
+    const std::string name = file;
+    expect_ok("synth ggx:alpha=0.3,F0=0.5+lambert:albedo=0.2 --measured-to 30 -o " + name);
+    EXPECT_TRUE(contains(expect_ok("info " + name), "measured    to 30 degrees from the normal\n"));
+    const std::string out = expect_ok("fit " + name + " --model ggx+lambert -o fit.json");
+    EXPECT_TRUE(contains(out, "-           CIEDE2000")) << out;
+    for (const Lobe& lobe : load_model(path("fit.json")).lobes) {
+      if (lobe.specular()) {
+        EXPECT_NEAR(lobe.shape[0].r, 0.3, 0.001);
+      } else {
+        EXPECT_NEAR(lobe.color[0].r, 0.2, 0.001);
+      }
+    }
+    const auto errors = nlohmann::json::parse(read_bytes(path("fit.json")))["errors"];
+    EXPECT_LT(errors["inside_cutoff"]["relative_l1"].get<double>(), 0.001);
+    EXPECT_TRUE(errors["beyond_cutoff"]["relative_l1"].is_null());
+    EXPECT_TRUE(contains(expect_ok("fit " + name + " --table errors.md"), "written"));
+    EXPECT_TRUE(contains(read_bytes(path("errors.md")), "| - | - | - | - | - |"));
+  }
+}
+
 TEST_F(FitToolTest, WritesATableOfErrors) {
   write_table("one.mbsdf", one_lobe);
   write_table("two.mbsdf", two_lobes);

@@ -277,6 +277,44 @@ TEST(FitOptions, NothingBeyondTheCutoffIsLookedAt) {
   EXPECT_GT(fit(f, truth).summary.cost, 1e-3);  // the default looks further
 }
 
+// Cells that a table made up do not count: a table measured to some angle gives what a cut-off at that
+// angle gives, and its holes cost nothing.
+TEST(Fit, LooksAtMeasuredCellsAlone) {
+  const LobeModel truth = parse_model("lambert:albedo=0.2+ggx:alpha=0.3,F0=0.5");
+  const auto expect_found = [&](const BrdfTable& table, const std::string& what) {
+    const Lobe diffuse = truth.lobes[0], lobe = truth.lobes[1];
+    const LobeModel found = fit(measured_part(table), truth).model;
+    EXPECT_NEAR(found.lobes[0].color[0].g, diffuse.color[0].g, 0.002) << what;
+    EXPECT_NEAR(found.lobes[1].shape[0].g, lobe.shape[0].g, 0.003) << what;
+    EXPECT_NEAR(found.lobes[1].color[0].g, lobe.color[0].g, 0.005) << what;
+  };
+  for (const double to : {20.0, 30.0, 60.0}) {
+    SynthOptions options;
+    options.measured_to = to * pi<double> / 180;
+    expect_found(BrdfTable(MerlTable(synthesize_merl(truth, options), {}), {}), "MERL");
+    for (const CellPolicy policy : {CellPolicy::fill, CellPolicy::zero}) {
+      const CellPolicies policies{CellPolicy::zero, policy, policy};
+      expect_found(BrdfTable(GridTable(synthesize_grid(truth, 90, 180, options), policies), {}), "MBSDF");
+    }
+  }
+  GridFile holes = synthesize_grid(truth, 90, 180);
+  std::mt19937 random(1);
+  for (std::size_t k = 0; k < holes.values.size(); k += 3)
+    if (random() % 8 == 0) holes.values[k] = std::numeric_limits<float>::infinity();
+  expect_found(BrdfTable(GridTable(holes), {}), "holes");
+
+  SynthOptions nothing;
+  nothing.measured_to = 1e-9;
+  GridFile one = synthesize_grid(truth, 10, 10, nothing);
+  for (int c = 0; c < 3; ++c) one.values[c] = 0.1f;
+  try {
+    fit(measured_part(BrdfTable(GridTable(one), {})), truth);
+    ADD_FAILURE() << "one cell was enough";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("no pair of directions within 75 degrees"), std::string::npos) << error.what();
+  }
+}
+
 TEST(FitOptions, OutOfRangeIsRefused) {
   const LobeModel form = parse_model("lambert");
   const auto refused = [&](void (*change)(FitOptions&), const std::string& field) {

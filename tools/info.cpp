@@ -1,7 +1,7 @@
 #include <gonio/brdf/albedo.h>
 #include <gonio/brdf/bytes.h>
 #include <gonio/brdf/exr/stack_file.h>
-#include <gonio/brdf/measured_range.h>
+#include <gonio/brdf/measured_to.h>
 #include <gonio/fitting/model.h>
 #include <gonio/tools/info.h>
 #include <gonio/tools/input.h>
@@ -84,15 +84,9 @@ void print_layout(const GridTable& table) {
         degrees(half_cell) + " to " + degrees(pi<double> / 2 - half_cell) + " (cell centres)");
 }
 
-/// "to 75 degrees from the normal", and how completely if not all of it.
 std::string measured_text(const BrdfTable& table) {
-  const MeasuredRange range = measured_range(table);
-  if (!(range.theta > 0)) return "less than half of the pairs of directions at any angle";
-  std::string text = "to " + degrees(range.theta) + " degrees from the normal";
-  if (range.share > 0.9995) return text;
-  char share[32];
-  std::snprintf(share, sizeof(share), "%.1f", 100 * range.share);
-  return text + ", " + share + " % of the pairs of directions up to there";
+  const double angle = measured_to(table);
+  return angle > 0 ? "to " + degrees(angle) + " degrees from the normal" : "less than half at every angle";
 }
 
 void print_table(const Options& options) {
