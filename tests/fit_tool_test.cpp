@@ -258,6 +258,28 @@ TEST_F(FitToolTest, ReportComparesLobesAndStacks) {
   EXPECT_TRUE(contains(read_bytes(path("report/report.md")), "For this material a "));
 }
 
+// A report compares fits with what was measured, and has a dash where nothing was.
+TEST_F(FitToolTest, ReportOfATableMeasuredToThirtyDegrees) {
+  SynthOptions options;
+  options.measured_to = 30 * pi<double> / 180;
+  write_mbsdf(path("a.mbsdf"), synthesize_grid(parse_model(one_lobe), 24, 24, options));
+  expect_ok("report a.mbsdf -o report --grid 6x6 --incident 3");
+  const auto material = nlohmann::json::parse(read_bytes(path("report/report.json")))["materials"][0];
+  ASSERT_EQ(material["fits"].size(), 3u);
+  for (const auto& fit : material["fits"]) {
+    EXPECT_LT(fit["errors"]["inside_cutoff"]["relative_l1"].get<double>(), 0.01);
+    EXPECT_TRUE(fit["errors"]["beyond_cutoff"]["albedo"].is_null());
+  }
+  int lobes = 0;
+  for (const auto& point : material["front"]) {
+    if (point["id"].get<std::string>().rfind("lobes", 0) != 0) continue;
+    EXPECT_LT(point["eval_error"].get<double>(), 0.01);
+    ++lobes;
+  }
+  EXPECT_EQ(lobes, 3);
+  EXPECT_TRUE(contains(read_bytes(path("report/report.md")), " | – | – | – | – | – |\n"));
+}
+
 // A mixture has no batch form, and is reported all the same.
 TEST_F(FitToolTest, ReportOfAMixture) {
   write_table("a.mbsdf", one_lobe);

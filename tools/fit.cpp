@@ -246,6 +246,7 @@ void add_fit(CLI::App& app) {
       ->capture_default_str();
   add_cell_policies(*verb, options->policies);
   verb->footer(
+      "Cells that a reader filled were not measured: they are neither fitted nor compared.\n"
       "The JSON is an input of info, validate, convert, report, synth, render and compare, and\n"
       "holds snippets for pbrt-v4 and Mitsuba 3 where the model exists there.\n\n"
       "Examples:\n"
