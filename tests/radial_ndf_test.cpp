@@ -165,8 +165,8 @@ TEST(RadialNdf, ExtractionFromTables) {
     const GgxNdf ggx{a, a};
     const ExtractedNdf found = extract_ndf(merl_table(ggx, Masking::full, 0.5));
     EXPECT_EQ(found.masking, Masking::full);
-    EXPECT_NEAR(std::tan(found.ndf.median_theta()) / a, 1, 0.01);
-    for (double t = 0; t <= 85; t += 2.5) EXPECT_NEAR(found.ndf.g1(t * degree), ggx.g1(at(t * degree, 0)), 4e-3) << a << ' ' << t;
+    EXPECT_NEAR(std::tan(found.ndf.median_theta()) / a, 1, 0.015);
+    for (double t = 0; t <= 85; t += 2.5) EXPECT_NEAR(found.ndf.g1(t * degree), ggx.g1(at(t * degree, 0)), 6e-3) << a << ' ' << t;
   }
 }
 

@@ -122,9 +122,28 @@ class Extraction {
 // Of tables no more is used: interpolation between their cells and goniometers are worst beyond.
 constexpr double last_table_angle = 75 * degree;
 
-bool usable(const BrdfTable& table, const glm::vec3& wi, const glm::vec3& wo) {
-  static const float lowest = static_cast<float>(std::cos(last_table_angle));
-  return wi.z >= lowest && wo.z >= lowest && table.measured(wi, wo) >= 0.999f;
+/// The mean over the azimuth of the difference vector, as far as the table was measured, of luminance times
+/// cos_i cos_o times weight(wi, wo): noise and single cells count less. NaN without a measured pair.
+template <class Weight>
+double mean_over_phi_d(const BrdfTable& table, double theta_h, double theta_d, const Weight& weight) {
+  constexpr int n = 36;
+  double sum = 0;
+  int count = 0;
+  for (int k = 0; k < n; ++k) {
+    glm::vec3 wi, wo;
+    directions_from_half_difference(theta_h, theta_d, k * 2 * pi<double> / n, wi, wo);
+    if (std::min(wi.z, wo.z) < std::cos(last_table_angle + 0.01) || table.measured(wi, wo) < 0.999f) continue;
+    sum += static_cast<double>(luminance(table.eval(wi, wo)) * wi.z * wo.z) * weight(wi, wo);
+    ++count;
+  }
+  return count > 0 ? sum / count : std::nan("");
+}
+
+/// f_r(k, k) from pairs half a degree on either side of k: the first cells of MERL.
+double retro_reflection(const BrdfTable& table, double theta) {
+  if (theta > last_table_angle) return std::nan("");
+  const auto one = [](const glm::vec3&, const glm::vec3&) { return 1.0; };
+  return mean_over_phi_d(table, theta, 0.5 * degree, one) / std::pow(std::cos(theta), 2);
 }
 
 /// G2(wi, wo). Full masking wears off with the azimuth between them: Heitz 2014, "Understanding the
@@ -149,24 +168,23 @@ double median(std::vector<double>& values) {
 }
 
 /// How far D and its masking are from the table between directions that differ, where the
-/// retro-reflection that D is from says nothing: the median of |log f_r| apart from a factor, Fresnel's,
-/// for each difference angle. 0 if too few can be compared.
+/// retro-reflection that D is from says nothing: the median of |log f_r| over half vectors, apart from a
+/// factor, Fresnel's, for each difference angle. 0 if too few can be compared.
 double misfit(const BrdfTable& table, const ExtractedNdf& found) {
-  constexpr std::size_t least = 12;
+  constexpr std::size_t least = 5;
+  const RadialNdf g1_at_nodes(static_cast<int>(found.ndf.values().size()), [&](double theta) { return found.ndf.g1(theta); });
+  const auto unmasked = [&](const glm::vec3& wi, const glm::vec3& wo) {
+    const auto g1 = [&](const glm::vec3& w) { return g1_at_nodes.eval(std::acos(static_cast<double>(w.z))); };
+    const double azimuth = std::abs(std::remainder(std::atan2(wi.y, wi.x) - std::atan2(wo.y, wo.x), 2 * pi<double>));
+    return 1 / masking_shadowing(found.masking, g1(wi), g1(wo), azimuth);
+  };
   std::vector<double> deviations;
   for (const double theta_d : {5.0, 10.0, 20.0, 30.0}) {
     std::vector<double> logarithms;
-    for (double theta_h = 2.5; theta_h < 75; theta_h += 5)
-      for (const double phi_d : {0.0, 30.0, 60.0, 90.0}) {
-        glm::vec3 wi, wo;
-        directions_from_half_difference(theta_h * degree, theta_d * degree, phi_d * degree, wi, wo);
-        if (!usable(table, wi, wo)) continue;
-        const double azimuth = std::abs(std::remainder(std::atan2(wi.y, wi.x) - std::atan2(wo.y, wo.x), 2 * pi<double>));
-        const double g2 = masking_shadowing(found.masking, found.ndf.g1(std::acos(static_cast<double>(wi.z))),
-                                            found.ndf.g1(std::acos(static_cast<double>(wo.z))), azimuth);
-        const double ratio = static_cast<double>(luminance(table.eval(wi, wo)) * wi.z * wo.z) / (found.ndf.eval(theta_h * degree) * g2);
-        if (ratio > 0 && std::isfinite(ratio)) logarithms.push_back(std::log(ratio));
-      }
+    for (double theta_h = 2.5; theta_h < 75; theta_h += 2.5) {
+      const double ratio = mean_over_phi_d(table, theta_h * degree, theta_d * degree, unmasked) / found.ndf.eval(theta_h * degree);
+      if (ratio > 0 && std::isfinite(ratio)) logarithms.push_back(std::log(ratio));
+    }
     if (logarithms.size() < least) continue;
     const double factor = median(logarithms);
     for (const double x : logarithms) deviations.push_back(std::abs(x - factor));
@@ -193,12 +211,7 @@ ExtractedNdf extract_ndf(const std::function<double(double)>& retro_reflection, 
 }
 
 ExtractedNdf extract_ndf(const BrdfTable& table, int nodes) {
-  const Extraction extraction(
-      [&](double theta) {
-        const glm::vec3 k(static_cast<float>(std::sin(theta)), 0.0f, static_cast<float>(std::cos(theta)));
-        return usable(table, k, k) ? static_cast<double>(luminance(table.eval(k, k))) : std::nan("");
-      },
-      nodes);
+  const Extraction extraction([&](double theta) { return retro_reflection(table, theta); }, nodes);
   ExtractedNdf best = extraction.iterate(Masking::full);
   double least = misfit(table, best) / 2;  // surfaces have it: the others must be clearly nearer
   for (const Masking masking : {Masking::height_correlated, Masking::independent}) {
