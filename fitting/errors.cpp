@@ -77,7 +77,7 @@ double albedo_difference(const BrdfFunction& table, const BrdfFunction& model, d
 // nearer about it.
 double largest_albedo_difference(const BrdfFunction& table, const BrdfFunction& model, double first,
                                  double last) {
-  constexpr int steps = 32, rounds = 4;
+  constexpr int steps = 32, rounds = 3;
   double largest = -1;
   for (int round = 0; round < rounds && first < last; ++round) {
     const double step = (last - first) / steps;

@@ -33,7 +33,7 @@ struct FitOptions {
   bool solid_angle_weights = true;
 
   /// Width of a Huber loss in units of the compressed residual; 0 is least squares. Off by default,
-  /// since readers have repaired the cells; 0.05 with cube_root suits noisy tables.
+  /// since cells that a reader repaired do not count; 0.05 with cube_root suits noisy tables.
   double robust_width = 0;
 
   /// Shape parameters per channel (true) or one for the three (false). Colours are always per

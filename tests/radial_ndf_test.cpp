@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <string>
 #include <type_traits>
 
@@ -188,6 +189,9 @@ TEST(RadialNdf, RefusesWhatIsNoDistribution) {
   EXPECT_THROW(RadialNdf(9, [](double) { return 0.0; }).normalise(), Error);
   EXPECT_THROW(extract_ndf([](double) { return 0.0; }), Error);
   EXPECT_THROW(extract_ndf([](double) { return std::nan(""); }), Error);
+  for (const double bad : {-1.0, std::numeric_limits<double>::infinity()})
+    EXPECT_THROW(extract_ndf([=](double) { return bad; }), Error);
+  for (const int nodes : {-1, 0, 1}) EXPECT_THROW(extract_ndf([](double) { return 1.0; }, Masking::full, nodes), Error);
 }
 
 }  // namespace

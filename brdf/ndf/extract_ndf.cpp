@@ -19,7 +19,7 @@ constexpr double degree = pi<double> / 180;
 class Extraction {
  public:
   Extraction(const std::function<double(double)>& retro_reflection, int nodes)
-      : n_(static_cast<std::size_t>(nodes)), kernel_(n_ * n_) {
+      : n_(static_cast<std::size_t>(detail::checked_nodes(nodes))), kernel_(n_ * n_) {
     for (std::size_t i = 0; i < n_; ++i) {
       const double theta = node(i);
       cosine_.push_back(std::cos(theta));

@@ -1,19 +1,17 @@
 #include <gonio/brdf/ndf/radial_ndf.h>
+#include <gonio/brdf/ndf/radial_nodes.h>
+#include <gonio/mapping/error.h>
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 
-#include <gonio/brdf/ndf/radial_nodes.h>
-#include <gonio/mapping/error.h>
-
 namespace gonio {
+namespace {
 
 using detail::for_each_point;
 using detail::over_azimuth;
 using detail::theta_of;
-
-namespace {
 
 double lerp(const std::vector<double>& values, int k, double t) {
   const auto i = static_cast<std::size_t>(k);
@@ -23,9 +21,9 @@ double lerp(const std::vector<double>& values, int k, double t) {
 }  // namespace
 
 RadialNdf::RadialNdf(int nodes, const std::function<double(double)>& density) {
-  if (nodes < 2) throw Error("radial normal distribution: found " + std::to_string(nodes) + " nodes, expected 2 or more");
-  for (int k = 0; k < nodes; ++k) {
-    const double theta = theta_of(k / (nodes - 1.0)), value = density(theta);
+  const int n = detail::checked_nodes(nodes);
+  for (int k = 0; k < n; ++k) {
+    const double theta = theta_of(k / (n - 1.0)), value = density(theta);
     if (!(value >= 0 && std::isfinite(value)))
       throw Error("radial normal distribution: at " + std::to_string(theta * 180 / pi<double>) + " degrees: found " +
                   std::to_string(value) + ", expected a finite value from 0");

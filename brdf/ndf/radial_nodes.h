@@ -1,8 +1,10 @@
 #pragma once
 
 #include <gonio/mapping/concentric.h>
+#include <gonio/mapping/error.h>
 
 #include <cmath>
+#include <string>
 
 /// The nodes of RadialNdf and integrals over them; not installed.
 namespace gonio::detail {
@@ -10,6 +12,12 @@ namespace gonio::detail {
 // Gauss-Legendre on [0, 1], n = 4.
 inline constexpr double gauss_node[] = {0.069431844202974, 0.330009478207572, 0.669990521792428, 0.930568155797026};
 inline constexpr double gauss_weight[] = {0.173927422568727, 0.326072577431273, 0.326072577431273, 0.173927422568727};
+
+/// @throws Error if they are fewer than two
+inline int checked_nodes(int nodes) {
+  if (nodes < 2) throw Error("radial normal distribution: found " + std::to_string(nodes) + " nodes, expected 2 or more");
+  return nodes;
+}
 
 /// theta = (pi/2) u^2.
 inline double theta_of(double u) noexcept { return pi<double> / 2 * u * u; }
