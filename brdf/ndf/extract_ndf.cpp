@@ -121,6 +121,8 @@ class Extraction {
 
 // Of tables no more is used: interpolation between their cells and goniometers are worst beyond.
 constexpr double last_table_angle = 75 * degree;
+// Retro-reflection is read from pairs so far on either side of k: the first cells of MERL.
+constexpr double theta_retro = 0.5 * degree;
 
 /// The mean over the azimuth of the difference vector, as far as the table was measured, of luminance times
 /// cos_i cos_o times weight(wi, wo): noise and single cells count less. NaN without a measured pair.
@@ -132,18 +134,18 @@ double mean_over_phi_d(const BrdfTable& table, double theta_h, double theta_d, c
   for (int k = 0; k < n; ++k) {
     glm::vec3 wi, wo;
     directions_from_half_difference(theta_h, theta_d, k * 2 * pi<double> / n, wi, wo);
-    if (std::min(wi.z, wo.z) < std::cos(last_table_angle + 0.01) || table.measured(wi, wo) < 0.999f) continue;
+    if (std::min(wi.z, wo.z) < std::cos(last_table_angle + theta_retro) || table.measured(wi, wo) < 0.999f) continue;
     sum += static_cast<double>(luminance(table.eval(wi, wo)) * wi.z * wo.z) * weight(wi, wo);
     ++count;
   }
   return count > 0 ? sum / count : std::nan("");
 }
 
-/// f_r(k, k) from pairs half a degree on either side of k: the first cells of MERL.
+/// f_r(k, k).
 double retro_reflection(const BrdfTable& table, double theta) {
   if (theta > last_table_angle) return std::nan("");
   const auto one = [](const glm::vec3&, const glm::vec3&) { return 1.0; };
-  return mean_over_phi_d(table, theta, 0.5 * degree, one) / std::pow(std::cos(theta), 2);
+  return mean_over_phi_d(table, theta, theta_retro, one) / std::pow(std::cos(theta), 2);
 }
 
 /// G2(wi, wo). Full masking wears off with the azimuth between them: Heitz 2014, "Understanding the
