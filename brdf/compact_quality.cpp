@@ -70,6 +70,7 @@ CompactQuality CompactDraws::quality(const std::function<glm::vec3(float, const 
     double off = 0;
     for (const CompactDraw& d : angle.draws) {
       const glm::vec3 w = weight(static_cast<float>(angle.theta_i), d);
+      if (std::isnan(w.r + w.g + w.b)) continue;
       table += glm::dvec3(d.weight);
       compact += glm::dvec3(w);
       for (int c = 0; c < 3; ++c) off += static_cast<double>(std::abs(w[c] - d.weight[c]));

@@ -42,7 +42,8 @@ class CompactDraws {
 
   CompactQuality quality(const Colour& colour) const;
 
-  /// The same for any f: its weight f cos theta_o / pdf for a draw at theta_i [rad]. Called from several threads.
+  /// The same for any f: its weight f cos theta_o / pdf for a draw at theta_i [rad]. A draw for which it is NaN has no
+  /// part in the errors. Called from several threads.
   CompactQuality quality(const std::function<glm::vec3(float theta_i, const CompactDraw&)>& weight) const;
 
   /// Up to `count` angles with the largest relative variance above `limit`, none next to another [rad].

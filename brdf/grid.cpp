@@ -188,9 +188,14 @@ GridTable::GridTable(const GridFile& file, const CellPolicies& policies)
                          {{n_in * n_out, n_phi, 1, false},
                           {n_in, n_out, n_phi, false},
                           {1, n_in, n_out * n_phi, false}});
+  measured_ = MeasuredCells(cell_origins(kinds, policies), n_theta_out_, n_phi_);
 }
 
-glm::vec3 GridTable::eval(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
+struct GridTable::Place {
+  Lerp i, o, p;
+};
+
+GridTable::Place GridTable::place_of(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
   const auto position = [](float angle, float range, int n) {
     return lerp_clamped(angle * (static_cast<float>(n) / range) - 0.5f, n);
   };
@@ -201,9 +206,18 @@ glm::vec3 GridTable::eval(const glm::vec3& wi, const glm::vec3& wo) const noexce
   const bool pole = wi.x == 0.0f && wi.y == 0.0f;
   const float ix = pole ? 1.0f : wi.x, iy = pole ? 0.0f : wi.y;
   const float phi = std::abs(fast_atan2(ix * wo.y - iy * wo.x, ix * wo.x + iy * wo.y));
-  const Lerp i = position(theta(wi), pi / 2, n_theta_in_);
-  const Lerp o = position(theta(wo), pi / 2, n_theta_out_);
-  const Lerp p = position(phi, pi, n_phi_);
+  return {position(theta(wi), pi / 2, n_theta_in_), position(theta(wo), pi / 2, n_theta_out_),
+          position(phi, pi, n_phi_)};
+}
+
+float GridTable::measured(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
+  const Place place = place_of(wi, wo);
+  return measured_.share(place.i, place.o, place.p);
+}
+
+glm::vec3 GridTable::eval(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
+  const Place place = place_of(wi, wo);
+  const Lerp &i = place.i, &o = place.o, &p = place.p;
   const auto row = [&](int in, int out) {
     const glm::vec3* cells =
         cells_.data() + (static_cast<std::ptrdiff_t>(in) * n_theta_out_ + out) * n_phi_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <gonio/brdf/cells.h>
+#include <gonio/brdf/measured_cells.h>
 #include <gonio/brdf/problem.h>
 
 #include <filesystem>
@@ -49,15 +50,24 @@ class GridTable {
   /// phi. Needs both directions above the horizon.
   glm::vec3 eval(const glm::vec3& wi, const glm::vec3& wo) const noexcept;
 
+  /// The share of eval()'s value that comes from cells which the file has a value for, in [0, 1].
+  /// Needs both directions above the horizon.
+  float measured(const glm::vec3& wi, const glm::vec3& wo) const noexcept;
+
   const CellCounts& cells() const noexcept { return counts_; }
   int n_theta_in() const noexcept { return n_theta_in_; }
   int n_theta_out() const noexcept { return n_theta_out_; }
   int n_phi() const noexcept { return n_phi_; }
 
  private:
+  struct Place;  // between which cells a pair of directions lies
+
+  Place place_of(const glm::vec3& wi, const glm::vec3& wo) const noexcept;
+
   int n_theta_in_, n_theta_out_, n_phi_;
   std::vector<glm::vec3> cells_;  // [theta_in][theta_out][phi]; a scalar file three times the same
   CellCounts counts_;
+  MeasuredCells measured_;
 };
 
 }  // namespace gonio

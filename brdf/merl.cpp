@@ -137,17 +137,31 @@ MerlTable::MerlTable(const MerlFile& file, const CellPolicies& policies) : n_phi
   counts_ =
       repair_cells(cells_, kinds, policies,
                    {{90, 90, n_phi, false}, {90 * 90, n_phi, 1, true}, {1, 90, 90 * n_phi, false}});
+  measured_ = MeasuredCells(cell_origins(kinds, policies), MerlFile::n_theta_d, n_phi_d_);
 }
 
-glm::vec3 MerlTable::eval(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
+struct MerlTable::Place {
+  Lerp h, d, p;
+};
+
+MerlTable::Place MerlTable::place_of(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
   constexpr float per_degree = static_cast<float>(180 / pi);
   const HalfDifference a = half_difference(wi, wo);
   const Lerp h = lerp_clamped(90.0f * std::sqrt(a.theta_h * static_cast<float>(2 / pi)) - 0.5f, 90);
   const Lerp d = lerp_clamped(a.theta_d * per_degree - 0.5f, 90);
   float phi_bin = a.phi_d * per_degree;
   if (phi_bin < 0.0f) phi_bin += static_cast<float>(n_phi_d_);
-  const Lerp p = lerp_periodic(phi_bin - 0.5f, n_phi_d_);
+  return {h, d, lerp_periodic(phi_bin - 0.5f, n_phi_d_)};
+}
 
+float MerlTable::measured(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
+  const Place place = place_of(wi, wo);
+  return measured_.share(place.h, place.d, place.p);
+}
+
+glm::vec3 MerlTable::eval(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
+  const Place place = place_of(wi, wo);
+  const Lerp &h = place.h, &d = place.d, &p = place.p;
   const auto row = [&](int ih, int id) {
     const glm::vec3* cells = cells_.data() + (ih * MerlFile::n_theta_d + id) * n_phi_d_;
     return lerp(cells[p.lo], cells[p.hi], p.t);

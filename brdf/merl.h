@@ -1,6 +1,7 @@
 #pragma once
 
 #include <gonio/brdf/cells.h>
+#include <gonio/brdf/measured_cells.h>
 #include <gonio/brdf/problem.h>
 
 #include <filesystem>
@@ -75,13 +76,22 @@ class MerlTable {
   /// directions above the horizon.
   glm::vec3 eval(const glm::vec3& wi, const glm::vec3& wo) const noexcept;
 
+  /// The share of eval()'s value that comes from cells which the file has a value for, in [0, 1].
+  /// Needs both directions above the horizon.
+  float measured(const glm::vec3& wi, const glm::vec3& wo) const noexcept;
+
   const CellCounts& cells() const noexcept { return counts_; }
   int n_phi_d() const noexcept { return n_phi_d_; }
 
  private:
+  struct Place;  // between which cells a pair of directions lies
+
+  Place place_of(const glm::vec3& wi, const glm::vec3& wo) const noexcept;
+
   int n_phi_d_;
   std::vector<glm::vec3> cells_;  // [theta_h][theta_d][phi_d]
   CellCounts counts_;
+  MeasuredCells measured_;
 };
 
 }  // namespace gonio

@@ -94,4 +94,20 @@ CellCounts repair_cells(std::vector<glm::vec3>& cells, const std::vector<CellKin
   return counts;
 }
 
+std::vector<CellOrigin> cell_origins(const std::vector<CellKind>& kinds,
+                                     const CellPolicies& policies) {
+  const auto origin = [&](CellKind kind) {
+    if (kind == CellKind::outside) return CellOrigin::outside;
+    const bool kept = kind == CellKind::valid ||
+                      (kind == CellKind::negative && policies.negative != CellPolicy::fill);
+    return kept ? CellOrigin::measured : CellOrigin::made_up;
+  };
+  std::vector<CellOrigin> origins;
+  origins.reserve(kinds.size());
+  for (const CellKind kind : kinds) origins.push_back(origin(kind));
+  const bool all = std::all_of(origins.begin(), origins.end(),
+                               [](CellOrigin o) { return o == CellOrigin::measured; });
+  return all ? std::vector<CellOrigin>() : origins;
+}
+
 }  // namespace gonio

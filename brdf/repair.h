@@ -1,6 +1,7 @@
 #pragma once
 
 #include <gonio/brdf/cells.h>
+#include <gonio/brdf/measured_cells.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -34,5 +35,10 @@ struct CellAxis {
 /// @throws Error under CellPolicy::reject, or if cells are to be filled and none is valid.
 CellCounts repair_cells(std::vector<glm::vec3>& cells, const std::vector<CellKind>& kinds,
                         const CellPolicies& policies, const std::vector<CellAxis>& axes);
+
+/// What the same policies make of each cell. A negative value is measured, noise about 0, unless
+/// CellPolicy::fill replaces it; one that is not finite or missing never is. Empty if every cell is
+/// measured.
+std::vector<CellOrigin> cell_origins(const std::vector<CellKind>& kinds, const CellPolicies& policies);
 
 }  // namespace gonio

@@ -70,6 +70,7 @@ RglTable::RglTable(RglFile file, const CellPolicies& policies)
   counts_ = repair_cells(
       colour_, kinds, policies,
       {{n * height, width, 1, false}, {n, height, width, false}, {1, n, height * width, false}});
+  measured_ = MeasuredCells(cell_origins(kinds, policies), colour_height_, colour_width_);
   // Interpolation between a positive and a negative node needs both; value_at() clamps what comes
   // out.
   if (policies.negative == CellPolicy::zero) {
@@ -114,6 +115,17 @@ glm::vec3 RglTable::colour_at(const Lerp& slice, float x, float y) const noexcep
   };
   return lerp(lerp(row(slice.lo, ly.lo), row(slice.lo, ly.hi), ly.t),
               lerp(row(slice.hi, ly.lo), row(slice.hi, ly.hi), ly.t), slice.t);
+}
+
+float RglTable::measured(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
+  constexpr float rounding = 1e-5f;
+  const float theta_i = theta_of(wi);
+  if (theta_i < theta_i_.front() - rounding || theta_i > theta_i_.back() + rounding) return 0.0f;
+  const Lerp slice = slice_at(theta_i);
+  const Normal normal = half_vector(wi, wo);
+  const Warp2d::Point place = vndf_.invert(slice, normal.u_theta, normal.u_phi);
+  return measured_.share(slice, lerp_clamped(place.y * static_cast<float>(colour_height_ - 1), colour_height_),
+                         lerp_clamped(place.x * static_cast<float>(colour_width_ - 1), colour_width_));
 }
 
 glm::vec3 RglTable::value_at(const Normal& normal, float theta_i, const Lerp& slice, float x,

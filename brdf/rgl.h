@@ -1,6 +1,7 @@
 #pragma once
 
 #include <gonio/brdf/cells.h>
+#include <gonio/brdf/measured_cells.h>
 #include <gonio/brdf/problem.h>
 #include <gonio/brdf/warp2d.h>
 
@@ -69,6 +70,10 @@ class RglTable {
   /// f_r * cos(theta_o), what the file tabulates. Needs both directions above the horizon.
   glm::vec3 eval_cosine(const glm::vec3& wi, const glm::vec3& wo) const noexcept;
 
+  /// The share of eval()'s value that comes from cells which the file has a value for, in [0, 1].
+  /// 0 outside the file's incident angles. Needs both directions above the horizon.
+  float measured(const glm::vec3& wi, const glm::vec3& wo) const noexcept;
+
   /// The format's own sampling: (u1, u2) in [0, 1)^2 through the luminance warp, the vndf warp and
   /// the reflection at the microfacet normal. Nothing if the draw falls below the horizon.
   std::optional<Sample> sample(const glm::vec3& wi, float u1, float u2) const noexcept;
@@ -104,6 +109,7 @@ class RglTable {
   bool jacobian_;
   int n_wavelengths_;
   CellCounts counts_;
+  MeasuredCells measured_;
 };
 
 }  // namespace gonio

@@ -137,7 +137,7 @@ class Resampler {
     for (int degrees = 0; degrees < 89; ++degrees) largest = std::max(largest, retro(degrees * pi / 180));
     // Without retro-reflection the choice is free.
     if (!(largest > 0)) return RadialNdf(radial_nodes, [](double) { return 1 / pi; });
-    const RadialNdf found = extract_ndf(retro, radial_nodes).ndf;
+    const RadialNdf found = extract_ndf(retro, Masking::full, radial_nodes).ndf;
     return RadialNdf(radial_nodes, [&](double theta) {
       return (1 - ndf_floor) * found.eval(theta) + ndf_floor / pi;
     });

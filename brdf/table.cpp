@@ -43,6 +43,11 @@ glm::vec3 BrdfTable::eval(const glm::vec3& wi, const glm::vec3& wo) const noexce
   return std::visit([&](const auto& table) { return table.eval(wi, wo); }, data_);
 }
 
+float BrdfTable::measured(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
+  if (!(wi.z > 0.0f && wo.z > 0.0f)) return 0.0f;
+  return std::visit([&](const auto& table) { return table.measured(wi, wo); }, data_);
+}
+
 BrdfTable load_table(const std::filesystem::path& path, const CellPolicies& policies) {
   try {
     return load(path, policies);

@@ -38,6 +38,11 @@ class BrdfTable {
   /// NaN; 0 for directions at or below the horizon. No allocation.
   glm::vec3 eval(const glm::vec3& wi, const glm::vec3& wo) const noexcept;
 
+  /// The share of that value which comes from cells that were measured, in [0, 1]: 1 unless some were
+  /// made up while loading, because the file has no value there, or `wi` is outside the angles of
+  /// the file. 0 for directions at or below the horizon. No allocation.
+  float measured(const glm::vec3& wi, const glm::vec3& wo) const noexcept;
+
   const Data& data() const noexcept { return data_; }
   const Info& info() const noexcept { return info_; }
 

@@ -3,8 +3,10 @@
 #include <gonio/fitting/errors.h>
 #include <gonio/fitting/half_vectors.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <vector>
 
 namespace gonio {
 namespace {
@@ -20,8 +22,9 @@ struct Sums {
 
 struct Row {  // of one incident angle
   Sums inside, beyond;
-  glm::dvec3 albedo_difference{0};
 };
+
+bool measured(const glm::dvec3& f) { return !std::isnan(f.r + f.g + f.b); }
 
 Row integrate_row(const BrdfFunction& table, const BrdfFunction& model, double theta_i,
                   double cutoff) {
@@ -32,6 +35,7 @@ Row integrate_row(const BrdfFunction& table, const BrdfFunction& model, double t
   detail::for_half_vectors(wi, 0, [&](const glm::dvec3& wo, double d_wo) {
     const double d_wi = std::sin(theta_i);
     const glm::dvec3 a = glm::dvec3(table(glm::vec3(wi), glm::vec3(wo))) * wo.z;
+    if (!measured(a)) return;
     const glm::dvec3 b = glm::dvec3(model(glm::vec3(wi), glm::vec3(wo))) * wo.z;
     Sums& sums = wi.z >= lowest && wo.z >= lowest ? row.inside : row.beyond;
     for (int c = 0; c < 3; ++c) {
@@ -41,7 +45,6 @@ Row integrate_row(const BrdfFunction& table, const BrdfFunction& model, double t
       sums.log_square += logarithm * logarithm * d_wo * d_wi;
       sums.difference += std::fabs(b[c] - a[c]) * wi.z * d_wo * d_wi;
       sums.table += a[c] * wi.z * d_wo * d_wi;
-      row.albedo_difference[c] += (b[c] - a[c]) * d_wo;
     }
   });
   return row;
@@ -51,7 +54,43 @@ void store(const Sums& sums, FitErrors& errors) {
   if (!(sums.measure > 0)) return;
   errors.cosine_rms = std::sqrt(sums.square / sums.measure);
   errors.log_rms = std::sqrt(sums.log_square / sums.measure);
-  errors.relative_l1 = sums.table > 0 ? sums.difference / sums.table : 0;
+  if (sums.table > 0) errors.relative_l1 = sums.difference / sums.table;
+}
+
+// The difference of the albedos at one incident angle, the largest over the channels; -1 where nothing
+// was measured.
+double albedo_difference(const BrdfFunction& table, const BrdfFunction& model, double theta_i) {
+  const glm::dvec3 wi(std::sin(theta_i), 0, std::cos(theta_i));
+  glm::dvec3 sum(0);
+  bool any = false;
+  detail::for_half_vectors(wi, 0, [&](const glm::dvec3& wo, double d_wo) {
+    const glm::dvec3 a(table(glm::vec3(wi), glm::vec3(wo)));
+    if (!measured(a)) return;
+    any = true;
+    sum += (glm::dvec3(model(glm::vec3(wi), glm::vec3(wo))) - a) * (wo.z * d_wo);
+  });
+  const glm::dvec3 size = glm::abs(sum);
+  return any ? std::max({size.r, size.g, size.b}) : -1;
+}
+
+// The largest of them from first to last: the best of equal steps, ends included, then nearer and
+// nearer about it.
+double largest_albedo_difference(const BrdfFunction& table, const BrdfFunction& model, double first,
+                                 double last) {
+  constexpr int steps = 32, rounds = 3;
+  double largest = -1;
+  for (int round = 0; round < rounds && first < last; ++round) {
+    const double step = (last - first) / steps;
+    std::vector<double> found(steps + 1);
+    parallel_for(found.size(), [&](size_t i) {
+      found[i] = albedo_difference(table, model, first + static_cast<double>(i) * step);
+    });
+    const auto best = std::max_element(found.begin(), found.end());
+    largest = std::max(largest, *best);
+    const double at = first + static_cast<double>(best - found.begin()) * step;
+    first = std::max(first, at - step), last = std::min(last, at + step);
+  }
+  return largest < 0 ? FitErrors::none : largest;
 }
 
 // The sphere is seen from +z; a pixel's normal is its place on the sphere.
@@ -81,12 +120,13 @@ void sphere(const BrdfFunction& table, const BrdfFunction& model, double cutoff,
         };
         const glm::vec3 wi = local(light), wo = local(view);
         if (!(wi.z > 0 && wo.z > 0)) continue;
-        const auto pixel = [&](const BrdfFunction& f) {
-          return lab_from_rgb(
-              glm::min(glm::dvec3(f(wi, wo)) * (pi<double> * cos_light), glm::dvec3(1)));
+        const glm::dvec3 a(table(wi, wo)), m(model(wi, wo));
+        if (!measured(a)) continue;
+        const auto pixel = [&](const glm::dvec3& f) {
+          return lab_from_rgb(glm::min(f * (pi<double> * cos_light), glm::dvec3(1)));
         };
         const int region = wi.z >= lowest && wo.z >= lowest ? 0 : 1;
-        sum[region] += delta_e_2000(pixel(table), pixel(model));
+        sum[region] += delta_e_2000(pixel(a), pixel(m));
         ++count[region];
       }
     }
@@ -98,7 +138,7 @@ void sphere(const BrdfFunction& table, const BrdfFunction& model, double cutoff,
 }  // namespace
 
 FitErrorReport fit_errors(const BrdfFunction& table, const BrdfFunction& model, double cutoff) {
-  constexpr int rows = 30;
+  constexpr int rows = 90;
   const auto angle = [](size_t i) {
     return (static_cast<double>(i) + 0.5) / rows * pi<double> / 2;
   };
@@ -109,12 +149,12 @@ FitErrorReport fit_errors(const BrdfFunction& table, const BrdfFunction& model, 
   for (size_t i = 0; i < rows; ++i) {
     inside += results[i].inside;
     beyond += results[i].beyond;
-    double& worst = angle(i) <= cutoff ? report.inside.albedo : report.beyond.albedo;
-    for (int c = 0; c < 3; ++c)
-      worst = std::fmax(worst, std::fabs(results[i].albedo_difference[c]));
   }
   store(inside, report.inside);
   store(beyond, report.beyond);
+  const double middle = std::min(cutoff, last_albedo_angle);
+  report.inside.albedo = largest_albedo_difference(table, model, 0, middle);
+  report.beyond.albedo = largest_albedo_difference(table, model, middle, last_albedo_angle);
   sphere(table, model, cutoff, report);
   return report;
 }

@@ -262,6 +262,11 @@ std::vector<Fit> fit_stages(const BrdfFunction& f, const LobeModel& form,
   check(options);
   if (form.lobes.empty()) throw Error("fit: the model has no lobe");
   std::vector<FitSample> samples = detail::fit_samples(f, options);
+  if (samples.empty()) {
+    throw Error("fit: found no pair of directions within " +
+                std::to_string(std::lround(options.grazing_cutoff * 180 / pi<double>)) +
+                " degrees that was measured, expected some");
+  }
   if (std::none_of(samples.begin(), samples.end(),
                    [](const FitSample& s) { return s.value != glm::dvec3(0); })) {
     throw Error("fit: the table is 0 or not finite at all " + std::to_string(samples.size()) +

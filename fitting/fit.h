@@ -33,7 +33,7 @@ struct FitOptions {
   bool solid_angle_weights = true;
 
   /// Width of a Huber loss in units of the compressed residual; 0 is least squares. Off by default,
-  /// since readers have repaired the cells; 0.05 with cube_root suits noisy tables.
+  /// since cells that a reader repaired do not count; 0.05 with cube_root suits noisy tables.
   double robust_width = 0;
 
   /// Shape parameters per channel (true) or one for the three (false). Colours are always per
@@ -80,7 +80,7 @@ struct Fit {
   FitSummary summary;
 };
 
-/// Fits the lobes of `form` to f. The parameters that `form` holds do not matter, only which lobes
+/// Fits the lobes of `form` to f, where f is not NaN. The parameters that `form` holds do not matter, only which lobes
 /// it has and which Fresnel term.
 ///
 /// All prefixes are fitted: the diffuse lobes with one specular lobe, with two, and so on; entry k
@@ -90,7 +90,7 @@ struct Fit {
 /// together by Ceres' trust region with bounds and derivatives from the lobes themselves. Never
 /// prints. Deterministic.
 /// @throws Error if `form` has no lobe, an option is out of its range, or f is 0 or not finite
-/// everywhere.
+/// at every pair of directions that is looked at.
 std::vector<Fit> fit_stages(const BrdfFunction& f, const LobeModel& form,
                             const FitOptions& options = {});
 

@@ -15,7 +15,7 @@ struct FitSample {
   double weight;     ///< square root of the share of the solid angles
 };
 
-/// The pairs of a half-difference grid inside the cut-off.
+/// The pairs of a half-difference grid inside the cut-off where f is not NaN.
 std::vector<FitSample> fit_samples(const BrdfFunction& f, const FitOptions& options);
 
 /// C(x), and its derivative where it is asked for.

@@ -32,7 +32,9 @@ TEST(FitErrors, KnownForAScaledLambert) {
   EXPECT_NEAR(r.inside.log_rms, std::log(1.1), 0.01);  // the offset takes a little off
   EXPECT_GT(r.inside.delta_e, 0.5);
   EXPECT_LT(r.inside.delta_e, 5);
-  EXPECT_EQ(r.beyond.relative_l1, 0);
+  // Nothing lies beyond 90 degrees.
+  EXPECT_TRUE(std::isnan(r.beyond.relative_l1));
+  EXPECT_TRUE(std::isnan(r.beyond.albedo));
 }
 
 TEST(FitErrors, AreKeptApartByTheCutoff) {
@@ -46,6 +48,68 @@ TEST(FitErrors, AreKeptApartByTheCutoff) {
   EXPECT_EQ(r.inside.delta_e, 0);
   EXPECT_NEAR(r.beyond.relative_l1, 2, 1e-4);
   EXPECT_GT(r.beyond.delta_e, 5);
+}
+
+// The largest difference between two angles of any grid, at the cut-off, and at the end.
+TEST(FitErrors, AlbedoIsTheLargestOfAllAngles) {
+  constexpr double degree = pi<double> / 180;
+  const auto brighter = [](const auto& extra) -> BrdfFunction {
+    return [=](const glm::vec3& wi, const glm::vec3&) {
+      return glm::vec3(0.1f, 0.1f + static_cast<float>(extra(std::acos(static_cast<double>(wi.z)))), 0.1f);
+    };
+  };
+  for (const double peak : {0.0, 11.3, 40.25, 74.1}) {
+    const auto hill = [=](double theta) { return -0.05 * std::exp(-std::pow((theta - peak * degree) / degree, 2)); };
+    EXPECT_NEAR(fit_errors(constant(0.1f), brighter(hill)).inside.albedo, 0.05 * pi<double>, 5e-4) << peak;
+  }
+  for (const double cutoff : {30.0, 75.0, 80.5}) {
+    const auto slope = [](double theta) { return 0.1 * theta * theta; };
+    const FitErrorReport r = fit_errors(constant(0.1f), brighter(slope), cutoff * degree);
+    EXPECT_NEAR(r.inside.albedo / (slope(cutoff * degree) * pi<double>), 1, 2e-3);
+    EXPECT_NEAR(r.beyond.albedo / (slope(last_albedo_angle) * pi<double>), 1, 2e-3);
+  }
+}
+
+// The albedo of a lobe alone, by quadrature over outgoing directions.
+TEST(FitErrors, AlbedoOfALobe) {
+  constexpr double degree = pi<double> / 180;
+  for (const double alpha : {0.05, 0.3, 1.0}) {
+    const LobeModel model = parse_model("ggx:alpha=" + std::to_string(alpha) + ",F0=0.5,F90=0.1");
+    const auto albedo = [&](double theta_i) {
+      constexpr int n = 1000;
+      double sum = 0;
+      for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+          const double theta = (i + 0.5) / n * pi<double> / 2, phi = (j + 0.5) / n * pi<double>;
+          const glm::dvec3 wi(-std::sin(theta_i), 0, std::cos(theta_i));
+          const glm::dvec3 wo(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
+          sum += model.eval(wi, wo).r * wo.z * std::sin(theta);
+        }
+      return sum * pi<double> * pi<double> / (n * n);
+    };
+    const double expected = std::max({albedo(0), albedo(25 * degree), albedo(50 * degree), albedo(75 * degree)});
+    const BrdfFunction f = [&](const glm::vec3& wi, const glm::vec3& wo) { return model.eval(wi, wo); };
+    EXPECT_NEAR(fit_errors(constant(0), f).inside.albedo / expected, 1, 0.005) << alpha;
+  }
+}
+
+// What is NaN was not measured, and has no part in any error.
+TEST(FitErrors, OfWhatWasMeasured) {
+  constexpr double degree = pi<double> / 180;
+  const float lowest = std::cos(30 * pi<float> / 180);
+  const auto cut = [=](float value) -> BrdfFunction {
+    return [=](const glm::vec3& wi, const glm::vec3& wo) {
+      return glm::vec3(wi.z < lowest || wo.z < lowest ? std::numeric_limits<float>::quiet_NaN() : value);
+    };
+  };
+  const FitErrorReport part = fit_errors(cut(0.1f), constant(0.11f)), whole = fit_errors(constant(0.1f), constant(0.11f), 30 * degree);
+  EXPECT_EQ(part.inside.cosine_rms, whole.inside.cosine_rms);
+  EXPECT_EQ(part.inside.log_rms, whole.inside.log_rms);
+  EXPECT_EQ(part.inside.relative_l1, whole.inside.relative_l1);
+  EXPECT_EQ(part.inside.delta_e, whole.inside.delta_e);
+  EXPECT_NEAR(part.inside.albedo, 0.01 * pi<double> / 4, 2e-4);  // sin^2 of 30 degrees of the hemisphere's
+  for (const double e : {part.beyond.cosine_rms, part.beyond.log_rms, part.beyond.relative_l1, part.beyond.albedo, part.beyond.delta_e})
+    EXPECT_TRUE(std::isnan(e));
 }
 
 // Sharma, Wu and Dalal 2005, table 1.

@@ -115,6 +115,29 @@ TEST_F(FitToolTest, OptionsReachTheFit) {
       << help;
 }
 
+// What the reader filled in is neither fitted nor compared, and info says what there is.
+TEST_F(FitToolTest, MeasuredToThirtyDegrees) {
+  for (const char* file : {"a.binary", "a.mbsdf"}) {
+    const std::string name = file;
+    expect_ok("synth ggx:alpha=0.3,F0=0.5+lambert:albedo=0.2 --measured-to 30 -o " + name);
+    EXPECT_TRUE(contains(expect_ok("info " + name), "measured    to 30 degrees from the normal\n"));
+    const std::string out = expect_ok("fit " + name + " --model ggx+lambert -o fit.json");
+    EXPECT_TRUE(contains(out, "-           CIEDE2000")) << out;
+    for (const Lobe& lobe : load_model(path("fit.json")).lobes) {
+      if (lobe.specular()) {
+        EXPECT_NEAR(lobe.shape[0].r, 0.3, 0.001);
+      } else {
+        EXPECT_NEAR(lobe.color[0].r, 0.2, 0.001);
+      }
+    }
+    const auto errors = nlohmann::json::parse(read_bytes(path("fit.json")))["errors"];
+    EXPECT_LT(errors["inside_cutoff"]["relative_l1"].get<double>(), 0.001);
+    EXPECT_TRUE(errors["beyond_cutoff"]["relative_l1"].is_null());
+    EXPECT_TRUE(contains(expect_ok("fit " + name + " --table errors.md"), "written"));
+    EXPECT_TRUE(contains(read_bytes(path("errors.md")), "| - | - | - | - | - |"));
+  }
+}
+
 TEST_F(FitToolTest, WritesATableOfErrors) {
   write_table("one.mbsdf", one_lobe);
   write_table("two.mbsdf", two_lobes);
@@ -233,6 +256,28 @@ TEST_F(FitToolTest, ReportComparesLobesAndStacks) {
   for (const char* file : {"report/report.md", "report/report.html"}) EXPECT_TRUE(contains(read_bytes(path(file)), verdict)) << file;
   EXPECT_GT(material["lobes_against_stack"]["equal_time_ratio"].get<double>(), 0);
   EXPECT_TRUE(contains(read_bytes(path("report/report.md")), "For this material a "));
+}
+
+// A report compares fits with what was measured, and has a dash where nothing was.
+TEST_F(FitToolTest, ReportOfATableMeasuredToThirtyDegrees) {
+  SynthOptions options;
+  options.measured_to = 30 * pi<double> / 180;
+  write_mbsdf(path("a.mbsdf"), synthesize_grid(parse_model(one_lobe), 24, 24, options));
+  expect_ok("report a.mbsdf -o report --grid 6x6 --incident 3");
+  const auto material = nlohmann::json::parse(read_bytes(path("report/report.json")))["materials"][0];
+  ASSERT_EQ(material["fits"].size(), 3u);
+  for (const auto& fit : material["fits"]) {
+    EXPECT_LT(fit["errors"]["inside_cutoff"]["relative_l1"].get<double>(), 0.01);
+    EXPECT_TRUE(fit["errors"]["beyond_cutoff"]["albedo"].is_null());
+  }
+  int lobes = 0;
+  for (const auto& point : material["front"]) {
+    if (point["id"].get<std::string>().rfind("lobes", 0) != 0) continue;
+    EXPECT_LT(point["eval_error"].get<double>(), 0.01);
+    ++lobes;
+  }
+  EXPECT_EQ(lobes, 3);
+  EXPECT_TRUE(contains(read_bytes(path("report/report.md")), " | – | – | – | – | – |\n"));
 }
 
 // A mixture has no batch form, and is reported all the same.

@@ -130,8 +130,16 @@ TEST(Fit, RecoversConductors) {
     EXPECT_NEAR(found.color[0][c], lobe.color[0][c], 0.05 * lobe.color[0][c]);
     EXPECT_NEAR(found.color[1][c], lobe.color[1][c], 0.05 * lobe.color[1][c]);
   }
-  EXPECT_GT(conductor_bound(lobe, default_grazing_cutoff).x, 0.05);
-  EXPECT_LT(conductor_bound(lobe, 88 * pi<double> / 180).x, 0.03);
+  // The figures of docs/fit.md.
+  const auto expect_bound = [](Lobe metal, int channel, double cutoff, double eta, double k) {
+    for (glm::dvec3& c : metal.color) c = glm::dvec3(c[channel]);
+    const glm::dvec2 bound = conductor_bound(metal, cutoff * pi<double> / 180);
+    EXPECT_NEAR(bound.x, eta, 0.0006);
+    EXPECT_NEAR(bound.y, k, 0.0006);
+  };
+  expect_bound(lobe, 0, 75, 0.065, 0.036);
+  expect_bound(lobe, 1, 75, 0.011, 0.006);
+  expect_bound(lobe, 0, 88, 0.023, 0.013);
 }
 
 TEST(Fit, RecoversModelsFromTablesInMerlLayout) {
@@ -139,7 +147,9 @@ TEST(Fit, RecoversModelsFromTablesInMerlLayout) {
     const char* text;
     double noise, tolerance;
   };
-  for (const Case& c : {Case{"lambert:albedo=0.5/0.3/0.1+ggx:alpha=0.15,F0=0.05", 0, 0.01},
+  for (const Case& c : {Case{"ggx:alpha=0.01,F0=0.02", 0, 0.001}, Case{"ggx:alpha=1,F0=1", 0, 0.001},
+                        Case{"beckmann:alpha=0.02,F0=1", 0, 0.001}, Case{"beckmann:alpha=1,F0=0.02", 0, 0.001},
+                        Case{"lambert:albedo=0.5/0.3/0.1+ggx:alpha=0.15,F0=0.05", 0, 0.01},
                         Case{"default", 0, 0.01}, Case{"default", 0.02, 0.05}}) {
     const LobeModel truth = parse_model(c.text);
     SynthOptions options;
@@ -151,6 +161,18 @@ TEST(Fit, RecoversModelsFromTablesInMerlLayout) {
     expect_parameters(fit(f, truth).model, truth, c.tolerance,
                       std::string(c.text) + " noise " + std::to_string(c.noise));
   }
+}
+
+// Cells of one degree blur a narrow lobe.
+TEST(Fit, RecoversGgxFromAGrid) {
+  for (const auto& [alpha, tolerance] : {std::pair{0.03, 0.03}, {0.1, 0.005}, {1.0, 0.001}})
+    for (const double f0 : {0.02, 1.0}) {
+      const LobeModel truth = parse_model("ggx:alpha=" + std::to_string(alpha) + ",F0=" + std::to_string(f0));
+      const GridTable table(synthesize_grid(truth));
+      const Lobe found = fit([&](const glm::vec3& wi, const glm::vec3& wo) { return table.eval(wi, wo); }, truth).model.lobes[0];
+      EXPECT_NEAR(found.shape[0].r / alpha, 1, tolerance) << f0;
+      EXPECT_NEAR(found.color[0].r / f0, 1, tolerance) << alpha;
+    }
 }
 
 TEST(Fit, DerivativesAgreeWithDifferences) {
@@ -275,6 +297,44 @@ TEST(FitOptions, NothingBeyondTheCutoffIsLookedAt) {
   options.grazing_cutoff = 60 * pi<double> / 180;
   expect_parameters(fit(f, truth, options).model, truth, 0.01, "cut-off");
   EXPECT_GT(fit(f, truth).summary.cost, 1e-3);  // the default looks further
+}
+
+// Cells that a table made up do not count: a table measured to some angle gives what a cut-off at that
+// angle gives, and its holes cost nothing.
+TEST(Fit, LooksAtMeasuredCellsAlone) {
+  const LobeModel truth = parse_model("lambert:albedo=0.2+ggx:alpha=0.3,F0=0.5");
+  const auto expect_found = [&](const BrdfTable& table, const std::string& what) {
+    const Lobe diffuse = truth.lobes[0], lobe = truth.lobes[1];
+    const LobeModel found = fit(measured_part(table), truth).model;
+    EXPECT_NEAR(found.lobes[0].color[0].g, diffuse.color[0].g, 0.002) << what;
+    EXPECT_NEAR(found.lobes[1].shape[0].g, lobe.shape[0].g, 0.003) << what;
+    EXPECT_NEAR(found.lobes[1].color[0].g, lobe.color[0].g, 0.005) << what;
+  };
+  for (const double to : {20.0, 30.0, 60.0}) {
+    SynthOptions options;
+    options.measured_to = to * pi<double> / 180;
+    expect_found(BrdfTable(MerlTable(synthesize_merl(truth, options), {}), {}), "MERL");
+    for (const CellPolicy policy : {CellPolicy::fill, CellPolicy::zero}) {
+      const CellPolicies policies{CellPolicy::zero, policy, policy};
+      expect_found(BrdfTable(GridTable(synthesize_grid(truth, 90, 180, options), policies), {}), "MBSDF");
+    }
+  }
+  GridFile holes = synthesize_grid(truth, 90, 180);
+  std::mt19937 random(1);
+  for (std::size_t k = 0; k < holes.values.size(); k += 3)
+    if (random() % 8 == 0) holes.values[k] = std::numeric_limits<float>::infinity();
+  expect_found(BrdfTable(GridTable(holes), {}), "holes");
+
+  SynthOptions nothing;
+  nothing.measured_to = 1e-9;
+  GridFile one = synthesize_grid(truth, 10, 10, nothing);
+  for (int c = 0; c < 3; ++c) one.values[c] = 0.1f;
+  try {
+    fit(measured_part(BrdfTable(GridTable(one), {})), truth);
+    ADD_FAILURE() << "one cell was enough";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("no pair of directions within 75 degrees"), std::string::npos) << error.what();
+  }
 }
 
 TEST(FitOptions, OutOfRangeIsRefused) {

@@ -71,6 +71,38 @@ TEST_F(NdfTool, TablesOfEachFormat) {
   EXPECT_GT(file["total_variation"].get<double>(), 0.01);
 }
 
+// What was put in comes out: width, peak and G1 of the closed form, for narrow and wide lobes, with and
+// without F0, and from the part that was measured.
+TEST_F(NdfTool, SynthesisedGgx) {
+  struct Case {
+    double alpha;
+    const char *model, *file, *options;
+  };
+  for (const Case& c : {Case{0.02, "ggx:alpha=0.02,F0=0.02", "a.binary", ""}, Case{0.3, "ggx:alpha=0.3,F0=1", "a.binary", ""},
+                        Case{0.3, "ggx:alpha=0.3,F0=1", "a.mbsdf", ""}, Case{0.3, "ggx:alpha=0.3,F0=0.5", "a.binary", "--noise 0.05"},
+                        Case{1, "ggx:alpha=1,F0=0.5", "a.binary", "--noise 0.05"}, Case{1, "ggx:alpha=1,F0=1", "a.binary", ""},
+                        Case{1, "ggx:alpha=1,F0=0.02", "a.mbsdf", ""}, Case{0.3, "ggx:alpha=0.3,F0=1", "a.binary", "--measured-to 30"},
+                        Case{1, "ggx:alpha=1,F0=0.04", "a.mbsdf", "--measured-to 50"}}) {
+    SCOPED_TRACE(std::string(c.model) + " " + c.file + " " + c.options);
+    const std::string file = c.file;
+    const std::string synth = "cd '" + folder_.path().string() + "' && '" GONIO_TOOL "' synth " + c.model + " -o " + file + " " + c.options;
+    ASSERT_EQ(std::system(synth.c_str()), 0);
+    ASSERT_EQ(run(file + " -o a --size 32"), 0) << text("err");
+    const json j = result("a"), radial = j["radial"];
+    EXPECT_NEAR(radial["alpha_ggx"].get<double>() / c.alpha, 1, 0.01);
+    EXPECT_NEAR(radial["alpha_ggx_of_peak"].get<double>() / c.alpha, 1, 0.01);
+    for (const int t : {10, 30, 50, 70, 80, 85}) {
+      const double expected = test::GgxNdf{c.alpha, c.alpha}.g1(test::at(t * test::pi / 180, 0));
+      EXPECT_NEAR(radial["g1"][std::to_string(t)].get<double>(), expected, 3e-3) << t;
+    }
+    if (c.alpha >= 0.3 && std::string(c.options).find("--measured-to") == std::string::npos) {
+      EXPECT_EQ(j["extraction"]["masking"], "height-correlated");
+    }
+  }
+  EXPECT_NEAR(result("a")["extraction"]["measured_to_degrees"].get<double>(), 50, 1);
+  EXPECT_NE(text("a/ndf.md").find("| masking and shadowing | "), std::string::npos);
+}
+
 // Measured: its D is normalised, its own sigma is that of its own ndf by our integral, and the
 // distribution extracted from its retro-reflection resembles its own.
 TEST_F(NdfTool, MeasuredRgl) {

@@ -105,7 +105,7 @@ void sized(const std::filesystem::path& in, const std::filesystem::path& out, co
     if (any_kind || !request.front.empty()) {
       try {
         fits = fit_table(*table, parse_model(default_fit_form));
-      } catch (const Error&) {  // a black table
+      } catch (const Error&) {  // a black table, or one of which nothing was measured
       }
       lobes = smallest_lobes(table, fits, any_kind ? *options.max_variance : 0, options.budget, points);
     }

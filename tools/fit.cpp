@@ -11,6 +11,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -55,10 +56,13 @@ TableFits fit_file(const Options& options, const std::string& input) {
   }
 }
 
+/// A dash where nothing was measured.
+std::string error_text(double error) { return std::isnan(error) ? "-" : number(error); }
+
 void print_errors(const char* label, double FitErrors::*measure, const char* unit,
                   const FitErrorReport& errors) {
-  std::printf("  %-22s %-11.3g %-11.3g %s\n", label, errors.inside.*measure, errors.beyond.*measure,
-              unit);
+  std::printf("  %-22s %-11s %-11s %s\n", label, error_text(errors.inside.*measure).c_str(),
+              error_text(errors.beyond.*measure).c_str(), unit);
 }
 
 void print_fit(const Options& options, const StageFit& stage, double seconds) {
@@ -119,7 +123,7 @@ void write_rows(std::ostream& out, const TableFits& fits) {
     out << "| " << fit.model.name << " | " << fit.model.specular_count();
     for (const FitErrors& e : {errors.inside, errors.beyond}) {
       for (const double x : {e.cosine_rms, e.log_rms, e.relative_l1, e.albedo, e.delta_e})
-        out << " | " << number(x);
+        out << " | " << error_text(x);
     }
     out << " | " << number(fit.summary.cost, 4) << " | " << to_string(fit.summary.termination)
         << " | ";
@@ -137,7 +141,7 @@ void fit_to_table(const Options& options) {
        << " degrees, compression " << to_text(options.fit.compression) << ", channels "
        << (options.fit.separate_channels ? "separate" : "shared")
        << ". Cosine-weighted RMS in 1/sr, log RMS as natural logarithm, relative L1 and albedo "
-          "without unit, ΔE is CIEDE2000 of a lit sphere; each inside the cut-off, then beyond it. "
+          "without unit, ΔE is CIEDE2000 of a lit sphere; each inside the cut-off, then beyond it, and of what was measured alone: a dash where nothing was. "
           "The cost is what the fit minimises: more lobes never raise it, while the errors, which weigh differently, may rise a little. Seconds are of all stages of a material together."
           "\n\n| material | lobes | RMS | log RMS | L1 | albedo | ΔE | RMS beyond | log RMS beyond "
           "| L1 beyond | albedo beyond | ΔE beyond | cost | termination | s |\n|";
@@ -242,6 +246,7 @@ void add_fit(CLI::App& app) {
       ->capture_default_str();
   add_cell_policies(*verb, options->policies);
   verb->footer(
+      "Cells that a reader filled were not measured: they are neither fitted nor compared.\n"
       "The JSON is an input of info, validate, convert, report, synth, render and compare, and\n"
       "holds snippets for pbrt-v4 and Mitsuba 3 where the model exists there.\n\n"
       "Examples:\n"

@@ -1,9 +1,11 @@
 #include <gonio/brdf/compact_quality.h>
+#include <gonio/fitting/brdf_function.h>
 #include <gonio/fitting/lobe_sampler.h>
 #include <gonio/tools/front.h>
 #include <gonio/tools/report/timing.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace gonio {
 
@@ -20,9 +22,11 @@ FrontPoint front_point(const std::shared_ptr<const BrdfTable>& table, const Stag
     const auto s = sampler.sample({std::sin(theta_i), 0, std::cos(theta_i)}, {u, v});
     return s ? DirectionSample<float>{Vec3<float>(s->wo), s->pdf} : DirectionSample<float>{{0, 0, 1}, 0};
   });
+  const BrdfFunction measured = measured_part(*table);
   const CompactQuality quality = draws.quality([&](float theta_i, const CompactDraw& d) {
     if (!(d.pdf > 0)) return glm::vec3(0);
     const glm::vec3 wi(std::sin(theta_i), 0, std::cos(theta_i));
+    if (std::isnan(measured(wi, d.wo).r)) return glm::vec3(std::nanf(""));
     return glm::vec3(model.eval(wi, d.wo)) * (d.wo.z / d.pdf);
   });
   return {"lobes" + std::to_string(model.specular_count()), sampler.bytes(), time_sampler(sampler, TimedQueries(sampler)).sample,

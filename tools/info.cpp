@@ -1,6 +1,7 @@
 #include <gonio/brdf/albedo.h>
 #include <gonio/brdf/bytes.h>
 #include <gonio/brdf/exr/stack_file.h>
+#include <gonio/brdf/measured_to.h>
 #include <gonio/fitting/model.h>
 #include <gonio/tools/info.h>
 #include <gonio/tools/input.h>
@@ -83,6 +84,11 @@ void print_layout(const GridTable& table) {
         degrees(half_cell) + " to " + degrees(pi<double> / 2 - half_cell) + " (cell centres)");
 }
 
+std::string measured_text(const BrdfTable& table) {
+  const double angle = measured_to(table);
+  return angle > 0 ? "to " + degrees(angle) + " degrees from the normal" : "less than half at every angle";
+}
+
 void print_table(const Options& options) {
   const ProgressLine progress("reading " + options.file);
   const BrdfTable table = load_table(options.file, options.policies);
@@ -98,6 +104,7 @@ void print_table(const Options& options) {
                      cells(info.cells.negative, "negative", options.policies.negative) + ", " +
                      cells(info.cells.nonfinite, "not finite", options.policies.nonfinite) + ", " +
                      cells(info.cells.missing, "missing", options.policies.missing));
+  print("measured", measured_text(table));
   print_albedo([&](float theta_i) { return directional_albedo(table, theta_i); });
 }
 

@@ -111,7 +111,8 @@ Source read(const Options& options) {
     }
   }();
   source.json["seconds"]["extraction"] = clock.seconds();
-  source.json["extraction"] = {{"iterations", extracted.iterations}, {"last_relative_change", extracted.change}};
+  source.json["extraction"] = {{"masking", to_string(extracted.masking)}, {"measured_to_degrees", extracted.measured_to / degree},
+                               {"iterations", extracted.iterations}, {"last_relative_change", extracted.change}};
   source.json["radial"] = summary(extracted.ndf);
   source.profiles.push_back({"extracted from retro-reflection", "#222", "none", extracted.ndf});
   if (const auto* rgl = std::get_if<RglTable>(&table.data())) {
@@ -168,7 +169,11 @@ void write_markdown(std::ostream& out, const nlohmann::json& j, const std::strin
     row("alpha of the GGX with that peak", r["alpha_ggx_of_peak"]);
     for (const char* t : {"10", "30", "50", "70", "80", "85"}) row(std::string("G1 at ") + t + " degrees", r["g1"][t]);
   };
-  if (j.contains("radial")) radial(j["radial"], "Extracted");
+  if (j.contains("radial")) {
+    radial(j["radial"], "Extracted");
+    row("last angle of the retro-reflection [degrees]", j["extraction"]["measured_to_degrees"]);
+    out << "| masking and shadowing | " << j["extraction"]["masking"].get<std::string>() << " |\n";
+  }
   if (j.contains("file_ndf")) {
     const nlohmann::json& f = j["file_ndf"];
     radial(f, "The file's own ndf");

@@ -6,9 +6,7 @@
 namespace gonio {
 
 TableFits fit_table(const BrdfTable& table, const LobeModel& form, const FitOptions& options) {
-  const BrdfFunction f = [&](const glm::vec3& wi, const glm::vec3& wo) {
-    return table.eval(wi, wo);
-  };
+  const BrdfFunction f = measured_part(table);
   TableFits fits;
   const auto start = std::chrono::steady_clock::now();
   std::vector<Fit> stages = fit_stages(f, form, options);

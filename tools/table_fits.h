@@ -22,6 +22,7 @@ struct TableFits {
   double seconds = 0;  ///< of all fits together, which build on each other; not the errors
 };
 
+/// Fits what of the table was measured, and says how far the fits are from that.
 TableFits fit_table(const BrdfTable& table, const LobeModel& form, const FitOptions& options = {});
 
 /// More lobes are worth it only as long as the relative L1 error inside the cut-off falls: the

@@ -29,6 +29,11 @@ std::string number(double x, int digits = 2) {
   return text.str();
 }
 
+/// A dash where nothing was measured.
+std::string error_text(const nlohmann::json& error, int digits, double factor = 1) {
+  return error.is_null() ? "–" : number(factor * error.get<double>(), digits);
+}
+
 /// To four digits, for reading.
 std::string rounded(const std::string& description) {
   LobeModel model = parse_model(description);
@@ -116,8 +121,8 @@ void write_lobes(std::ostream& out, const MaterialReport& material) {
   if (material.fits.empty()) return;
   const nlohmann::json& errors = material.fits.back()["errors"]["inside_cutoff"];
   out << "\nIn place of the table, the fit with most lobes is off by "
-      << number(100 * errors["relative_l1"].get<double>()) << " % of the light and a mean ΔE of "
-      << number(errors["delta_e_2000"].get<double>())
+      << error_text(errors["relative_l1"], 2, 100) << " % of the light and a mean ΔE of "
+      << error_text(errors["delta_e_2000"], 2)
       << " inside the cut-off. More lobes never raise the cost of a fit; its errors, which weigh differently, may rise a "
          "little.\n";
   out << "\n| fitted model | RMS | log RMS | L1 | albedo | ΔE | RMS beyond | log RMS beyond | L1 "
@@ -126,7 +131,7 @@ void write_lobes(std::ostream& out, const MaterialReport& material) {
     out << "| `" << rounded(fit["model"].get<std::string>()) << '`';
     for (const char* part : {"inside_cutoff", "beyond_cutoff"}) {
       for (const char* key : {"cosine_rms", "log_rms", "relative_l1", "albedo", "delta_e_2000"})
-        out << " | " << number(fit["errors"][part][key].get<double>(), 3);
+        out << " | " << error_text(fit["errors"][part][key], 3);
     }
     out << " |\n";
   }
