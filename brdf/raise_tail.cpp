@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace gonio::detail {
@@ -10,14 +11,20 @@ namespace {
 constexpr double tail_weight = 1.1;
 // Where less than this share of the mass of the mean meridian is further out, a row is raised.
 constexpr double tail_share = 1e-4;
+// No more than this share of the mass of the mean meridian is added to one in its last cell.
+constexpr double horizon_share = 1e-3;
 
 double wanted_at(const DiskDensity& density, Polar<double> at) {
   const double g = density(at);
   return g > 0 && std::isfinite(g) ? g / tail_weight : 0;
 }
 
-/// The mass of every meridian beyond every row, in units of the mean meridian.
-std::vector<double> mass_beyond(const DiagramGrid& grid) {
+/// The mass of every meridian beyond every row, and that of the mean meridian.
+struct Masses {
+  std::vector<double> beyond;
+  double mean;
+};
+Masses masses(const DiagramGrid& grid) {
   const std::size_t rows = grid.r.size();
   std::vector<double> beyond(grid.density.size(), 0.0);
   double whole = 0;
@@ -27,18 +34,16 @@ std::vector<double> mass_beyond(const DiagramGrid& grid) {
       mass[j] = mass[j + 1] + RadialCell<double>{grid.r[j], grid.r[j + 1] - grid.r[j], grid.at(i, j), grid.at(i, j + 1)}.mass(1);
     if (i > 0) whole += (grid.phi[i] - grid.phi[i - 1]) * (mass[0] + *(mass - rows)) / 2;
   }
-  for (double& mass : beyond) mass *= grid.phi.back() / whole;
-  return beyond;
+  return {std::move(beyond), whole / grid.phi.back()};
 }
 
 /// Rows but the last: to what the density is at them and half way to the next row, on the meridian and half way to its
 /// neighbours.
-void raise_inner_rows(const DiskDensity& density, DiagramGrid& grid) {
+void raise_inner_rows(const DiskDensity& density, const Masses& m, DiagramGrid& grid) {
   const std::size_t count = grid.phi.size(), rows = grid.r.size();
-  const std::vector<double> beyond = mass_beyond(grid);
   for (std::size_t i = 0; i < count; ++i) {
     const double phi = grid.phi[i], before = grid.phi[i > 0 ? i - 1 : i], next = grid.phi[std::min(i + 1, count - 1)];
-    for (std::size_t j = rows - 2; j > 0 && beyond[i * rows + j] < tail_share; --j)
+    for (std::size_t j = rows - 2; j > 0 && m.beyond[i * rows + j] < tail_share * m.mean; --j)
       for (const double r : {grid.r[j], (grid.r[j] + grid.r[j + 1]) / 2})
         for (const double angle : {(before + phi) / 2, phi, (phi + next) / 2})
           grid.at(i, j) = std::max(grid.at(i, j), wanted_at(density, {r, angle}));
@@ -46,7 +51,7 @@ void raise_inner_rows(const DiskDensity& density, DiagramGrid& grid) {
 }
 
 /// The last row, where densities fall to 0: to what the last cells need at all distances from the horizon.
-void raise_horizon(const DiskDensity& density, DiagramGrid& grid) {
+void raise_horizon(const DiskDensity& density, double most, DiagramGrid& grid) {
   constexpr int steps = 24;  // from a meridian to the next
   const std::size_t last = grid.r.size() - 1, count = grid.phi.size();
   const double h = 1 - grid.r[last - 1];
@@ -60,14 +65,15 @@ void raise_horizon(const DiskDensity& density, DiagramGrid& grid) {
       wanted[i] = std::max(wanted[i], end), wanted[next] = std::max(wanted[next], end);
     }
   }
-  for (std::size_t i = 0; i < count; ++i) grid.at(i, last) = std::max(grid.at(i, last), wanted[i]);
+  for (std::size_t i = 0; i < count; ++i) grid.at(i, last) = std::max(grid.at(i, last), std::min(wanted[i], most / h));
 }
 
 }  // namespace
 
 void raise_tail(const DiskDensity& density, DiagramGrid& grid) {
-  raise_inner_rows(density, grid);
-  raise_horizon(density, grid);
+  const Masses m = masses(grid);
+  raise_inner_rows(density, m, grid);
+  raise_horizon(density, horizon_share * m.mean, grid);
 }
 
 }  // namespace gonio::detail

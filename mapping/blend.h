@@ -43,7 +43,7 @@ class Blend {
   T pdf(Polar<T> at) const noexcept {
     const auto m = d0_.meridian_through(at.phi);
     const int j = find_cell(d0_.r(), d0_.parallels_, at.r);
-    return radial_cell(rows_at(m.i, m.a), j).density_at(at.r, at.gap, 1 - d0_.r()[j + 1]);
+    return radial_cell(rows_at(m.i, m.a), j).density_at(at.r, at.gap, d0_.r()[j + 1]);
   }
 
   /// The inverse of sample(), exists everywhere; its pdf may be 0.
@@ -59,7 +59,7 @@ class Blend {
     const T s = std::clamp((at.r - cell.r0) / cell.h, T(0), T(1));
     const T v = mass > 0 ? std::min((rows.cumulative(j) + cell.mass(s)) / mass, T(1)) : T(0);
     return {std::min((below + inside) / mix(d0_.mass(), d1_.mass()), T(1)), v,
-            cell.density_at(at.r, at.gap, 1 - d0_.r()[j + 1])};
+            cell.density_at(at.r, at.gap, d0_.r()[j + 1])};
   }
 
  private:

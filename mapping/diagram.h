@@ -213,7 +213,7 @@ T Diagram<T>::pdf(const Meridian& m, T radius, T gap) const noexcept {
   const T *d0 = density(m.i), *d1 = density(m.i + 1);
   const T a = m.a, b = 1 - a;
   const RadialCell<T> cell{r()[j], r()[j + 1] - r()[j], b * d0[j] + a * d1[j], b * d0[j + 1] + a * d1[j + 1]};
-  return cell.density_at(radius, gap, 1 - r()[j + 1]);
+  return cell.density_at(radius, gap, r()[j + 1]);
 }
 
 extern template class Diagram<float>;

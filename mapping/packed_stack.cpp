@@ -54,7 +54,7 @@ class PackedStack::Blended {
     const int j = find_cell(stack_.r(), stack_.parallels_, at.r);
     const float* r = stack_.r() + j;
     const RadialCell<float> cell{r[0], r[1] - r[0], rows.density(j), rows.density(j + 1)};
-    return cell.density_at(at.r, at.gap, 1 - r[1]);
+    return cell.density_at(at.r, at.gap, r[1]);
   }
 
   PolarInverse<float> invert(Polar<float> at) const noexcept {
@@ -69,7 +69,7 @@ class PackedStack::Blended {
     const RadialCell<float> cell = cells.cell(j - b * block);
     const float s = std::clamp((at.r - cell.r0) / cell.h, 0.0f, 1.0f);
     const float v = mass > 0 ? std::min((rows.start(b) + before + cell.mass(s)) / mass, 1.0f) : 0.0f;
-    return {std::min(angle / below(stack_.meridians_ - 1), 1.0f), v, cell.density_at(at.r, at.gap, 1 - stack_.r()[j + 1])};
+    return {std::min(angle / below(stack_.meridians_ - 1), 1.0f), v, cell.density_at(at.r, at.gap, stack_.r()[j + 1])};
   }
 
  private:

@@ -63,10 +63,10 @@ struct RadialCell {
   /// 1 - radius(s); next to the horizon, in a cell that is counted from there, to all digits.
   T gap(T s) const noexcept { return (1 - r0) - s * h; }
 
-  /// The density at a radius and its gap, `end_gap` being 1 less the radius of the end. Each is trusted next to
-  /// the end of the cell where it has the digits.
-  T density_at(T r, T to_horizon, T end_gap) const noexcept {
-    const T s = std::clamp((r - r0) / h, T(0), T(1)), t = std::clamp((to_horizon - end_gap) / h, T(0), T(1));
+  /// The density at a radius and its gap, r1 being the radius of the end. Next to an end at the horizon the gap has
+  /// the digits.
+  T density_at(T r, T to_horizon, T r1) const noexcept {
+    const T s = std::clamp((r - r0) / h, T(0), T(1)), t = std::clamp((r1 < 1 ? r1 - r : to_horizon) / h, T(0), T(1));
     return t < T(0.5) ? (1 - t) * d1 + t * d0 : density(s);
   }
 };
@@ -78,13 +78,15 @@ struct RadialPlace {
   T s;
 
   /// @param inside the mass from the start of the cell to the draw. @param beyond the mass of the meridian behind the
-  ///   draw, to all its digits. @param last whether the cell is the last one with mass: then it is counted from its
-  ///   end, by `beyond`. Of the mass before the last cell, inside is a difference: it says little about the end of a
-  ///   cell whose density falls to 0 there.
+  ///   draw, to all its digits. @param last whether the cell is the last one with mass: then its outer half is counted
+  ///   from its end, by `beyond`. `inside` is a difference of larger masses: it says little about the end of a cell whose
+  ///   density falls to 0 there.
   static RadialPlace of(const RadialCell<T>& cell, T r1, T inside, T beyond, bool last) noexcept {
-    const T mass = cell.mass(1), part = select(last, beyond, inside);
-    const RadialCell<T> c{select(last, r1, cell.r0), select(last, -cell.h, cell.h), select(last, cell.d1, cell.d0),
-                          select(last, cell.d0, cell.d1)};
+    const T mass = cell.mass(1);
+    const bool from_end = last && 2 * beyond < mass;
+    const T part = select(from_end, beyond, inside);
+    const RadialCell<T> c{select(from_end, r1, cell.r0), select(from_end, -cell.h, cell.h),
+                          select(from_end, cell.d1, cell.d0), select(from_end, cell.d0, cell.d1)};
     return {c, part > 0 && mass > 0 ? c.invert(std::min(part / mass, T(1))) : T(0)};
   }
 

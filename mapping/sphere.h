@@ -195,7 +195,7 @@ Vec3<T> SphereDiagram<T>::direction(const Place& p) const noexcept {
 
 template <class T>
 T SphereDiagram<T>::pdf(const Place& p) const noexcept {
-  return cell(p).density_at(p.radius, p.gap, 1 - end_radius(p.j));
+  return cell(p).density_at(p.radius, p.gap, end_radius(p.j));
 }
 
 template <class T>

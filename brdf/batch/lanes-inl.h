@@ -178,8 +178,8 @@ struct Cell {
   HWY_INLINE Cell from_end(M ends, V r1) const {
     return {hn::IfThenElse(ends, r1, r0), hn::IfThenElse(ends, hn::Neg(h), h), hn::IfThenElse(ends, d1, d0), hn::IfThenElse(ends, d0, d1)};
   }
-  HWY_INLINE V density_at(V r, V to_horizon, V end_gap) const {
-    const V t = clamp01(hn::Div(hn::Sub(to_horizon, end_gap), h));
+  HWY_INLINE V density_at(V r, V to_horizon, V r1) const {
+    const V t = clamp01(hn::Div(hn::IfThenElse(hn::Lt(r1, set(1)), hn::Sub(r1, r), to_horizon), h));
     return hn::IfThenElse(hn::Lt(t, set(0.5f)), mix(t, d1, d0), density(place(r)));
   }
   HWY_INLINE V mass(V s) const {
@@ -223,9 +223,11 @@ struct CellDraw {
   HWY_INLINE CellDraw(const Cell& c, V r1, V before, V meridian, V v, V rest) {
     const V sum = c.mean(), whole = hn::Mul(sum, c.h);
     const V most = hn::Mul(meridian, set(1 - 4 * 1.1920929e-7f));
-    const M ends = hn::Or(hn::Ge(r1, set(1)), hn::Ge(hn::Add(before, whole), most));
+    const V beyond = hn::Mul(rest, meridian);
+    const M last = hn::Or(hn::Ge(r1, set(1)), hn::Ge(hn::Add(before, whole), most));
+    const M ends = hn::And(last, hn::Lt(hn::Add(beyond, beyond), whole));
     cell = c.from_end(ends, r1);
-    s = cell.invert(hn::IfThenElse(ends, hn::Mul(rest, meridian), hn::MulSub(v, meridian, before)), sum, whole);
+    s = cell.invert(hn::IfThenElse(ends, beyond, hn::MulSub(v, meridian, before)), sum, whole);
   }
   HWY_INLINE V r() const { return cell.radius(s); }
   HWY_INLINE V gap() const { return cell.gap(s); }

@@ -120,7 +120,7 @@ struct DiagramLanes {
   HWY_INLINE V pdf(V radius, V gap, V angle) const {
     const Meridian m = meridian_through(angle);
     const Ring at = ring(m.sector.i, m.a, find_r(radius));
-    return at.cell.density_at(radius, gap, hn::Sub(set(1), at.end));
+    return at.cell.density_at(radius, gap, at.end);
   }
   HWY_INLINE Uniform invert(V radius, V gap, V angle) const {
     const Meridian m = meridian_through(angle);
@@ -128,7 +128,7 @@ struct DiagramLanes {
     const V inside = hn::Mul(hn::Mul(m.a, hn::Sub(m.sector.phi1, m.sector.phi0)), hn::Mul(set(0.5f), hn::Add(m.sector.m0, m.mass)));
     const V u = hn::Div(hn::Add(m.sector.before, inside), set(layout.whole_mass()));
     const V s = at.cell.place(radius), v = quotient(hn::Add(at.before, at.cell.mass(s)), m.mass);
-    return {hn::Min(u, set(1)), hn::Min(v, set(1)), at.cell.density_at(radius, gap, hn::Sub(set(1), at.end))};
+    return {hn::Min(u, set(1)), hn::Min(v, set(1)), at.cell.density_at(radius, gap, at.end)};
   }
 };
 using OneDiagram = DiagramLanes<One>;

@@ -27,8 +27,8 @@ struct EdgeScan {
 };
 
 /// Draws at all distances from the four sides and corners: u or v is 0, the least denormal, the least normal number,
-/// 2^-k down to 2^-149 or 1 - 2^-k up to 1 - 2^-24; the other number is one of these, or anywhere. Some 36,000 draws
-/// and as many pdfs.
+/// 2^-k down to 2^-148 or 1 - 2^-k up to 1 - 2^-24; the other number is one of these, or anywhere. Some 12,000 draws and as
+/// many pdfs, besides 16,000 draws in the interior: 4 to 10 ms for a stack.
 /// @param theta_i [rad] in [0, pi/2].
 EdgeScan scan_edges(const Subject& subject, double theta_i, const EdgeOptions& options = {});
 

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include <gonio/brdf/proof/coherence.h>
+#include <gonio/brdf/proof/edges.h>
 #include <gonio/brdf/proof/random.h>
 
 namespace gonio::proof {
@@ -87,6 +88,7 @@ class Run {
     draw_points();
     statistics();
     per_point();
+    edges();
     if (s_.f_r) support();
     if (s_.invert) round_trips();
     symmetry();
@@ -289,6 +291,20 @@ class Run {
     }
     at_most("pdf", pdf_error.value, 1, "in units of the pdf bound, " + pdf_error.where);
     if (s_.f_r) at_most("weight", weight_error.value, o_.weight_bound, weight_error.where);
+  }
+
+  void edges() {
+    EdgeOptions options;
+    options.along = 24;
+    options.seed = o_.seed;
+    const EdgeScan scan = scan_edges(s_, theta_i_, options);
+    at_most("edge_domain", static_cast<double>(scan.bad), 0, scan.where_bad);
+    at_most("edge_pdf", scan.pdf_factor, o_.edge_pdf_bound, scan.where_pdf);
+    if (!s_.f_r) return;
+    at_most("edge_weight", scan.largest_weight, o_.edge_weight_bound, scan.where_weight);
+    if (o_.direction_weight_bound == infinity) return;
+    const DirectionScan directions = scan_directions(s_, theta_i_, 128);
+    at_most("directions", directions.largest_weight, o_.direction_weight_bound, directions.where);
   }
 
   void support() {

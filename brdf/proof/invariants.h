@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,11 @@ struct InvariantOptions {
   double weight_bound = 1e-4;      ///< relative, of the weight against f_r cos theta_o / pdf
   double round_trip_bound = 1e-4;  ///< of (u, v), absolute, besides rounding of wo
   double direction_bound = 5e-4;   ///< of directions, absolute, besides rounding of (u, v)
+  /// Next to the sides of the square (scan_edges()): of the returned pdf over pdf(), or its inverse, and of the largest weight
+  /// over the largest one in the interior.
+  double edge_pdf_bound = 1.1, edge_weight_bound = 2;
+  /// Of the largest weight of any direction (scan_directions()), over the mean one. Infinite: not looked at.
+  double direction_weight_bound = std::numeric_limits<double>::infinity();
   /// Weights and round trips are judged where the density is at least this share of the largest one
   /// met; elsewhere floats have no digits left.
   double density_floor = 1e-6;
@@ -60,6 +66,9 @@ struct InvariantOptions {
 /// - `albedo`: the same of the mean weight (each channel) against the quadrature of f_r cos theta_o.
 /// - `pdf`: the returned pdf against pdf(), in units of the pdf bounds.
 /// - `weight`: the weight against f_r cos theta_o / pdf, relative.
+/// - `edge_domain`, `edge_pdf`, `edge_weight`: draws next to the sides of the square, at all distances from them: the number of
+///   draws that are none, the pdf and the weight; see scan_edges() and the bounds above. Weights where there is f_r alone.
+/// - `directions`: the largest weight f_r cos theta_o / pdf of any direction, whether a draw falls there or not.
 /// - `support`: share of the albedo at directions with f_r > 0 and pdf = 0; 0.
 /// - `round_trip_square`: |invert(sample(u, v)) - (u, v)|, the largest component.
 /// - `round_trip_direction`: |sample(invert(w)) - w|, the largest component.
