@@ -143,6 +143,11 @@ HWY_INLINE void draw_single(const BatchLayout& layout, std::size_t count, const 
   std::copy_n(map.phi, count, disk.phi), std::copy_n(map.pdf, count, disk.pdf);
 }
 
+/// The pdf of a displaced draw from its place. Hardly ever called, and not to be inlined: a draw needs its registers.
+static HWY_NOINLINE HWY_MAYBE_UNUSED V displaced_pdf(const BatchLayout& layout, VI block, V alpha, V r, V gap, V phi) {
+  return DisplacementLanes(layout, block, alpha).pdf(r, gap, phi);
+}
+
 /// Displacement::sample(). Both diagrams of all elements are drawn as one block, those before the incident angles first.
 HWY_INLINE void draw_displacement(const BatchLayout& layout, std::size_t count, const float* alpha, DiskBlock& disk) {
   const D d;
@@ -172,7 +177,7 @@ HWY_INLINE void draw_displacement(const BatchLayout& layout, std::size_t count, 
     const M beyond = hn::Or(hn::Lt(hn::Load(d, disk.rest + k), set(tail)), hn::Lt(gap, set(rim)));
     if (HWY_UNLIKELY(!hn::AllFalse(d, beyond))) {
       r = hn::Min(r, set(1 - rim)), gap = hn::Max(gap, set(rim));
-      pdf = hn::IfThenElse(beyond, DisplacementLanes(layout, hn::Load(di, disk.block + k), w1).pdf(r, gap, phi), pdf);
+      pdf = hn::IfThenElse(beyond, displaced_pdf(layout, hn::Load(di, disk.block + k), w1, r, gap, phi), pdf);
     }
     hn::Store(r, d, disk.r + k), hn::Store(gap, d, disk.gap + k), hn::Store(phi, d, disk.phi + k), hn::Store(pdf, d, disk.pdf + k);
   }
