@@ -71,7 +71,7 @@ Luminaire load_light(const std::filesystem::path& path, const LightOptions& opti
 
 /// The luminaire as an LM-63-2002 file of type C, with the strongest symmetry that holds. Absolute
 /// photometry (lumens -1) unless the flux of the lamps is known. A diagram whose polar axis is not
-/// vertical (type B) is tabulated anew every degree.
+/// vertical (type B) is tabulated anew every half degree.
 IesFile to_ies(const Luminaire& luminaire, const LightOptions& options = {});
 
 /// The luminaire as an EULUMDAT file, with the strongest symmetry that holds and whose planes other
