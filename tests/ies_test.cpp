@@ -370,6 +370,20 @@ TEST(Ies, NegativeValuesAndUnequalPolesAreTold) {
   EXPECT_EQ(at(light, 0, 45), 0);
 }
 
+TEST(Ies, DeviationsHaveTheUnitOfTheFile) {
+  const auto told = [](const std::string& values) {
+    std::string text = plain("0 180 360", values, "3 3");
+    text.replace(text.find("TILT"), 0, "[_INTENSITYUNITS] mW/sr\n");
+    Deviations deviations;
+    to_luminaire(read_ies(text, "a", deviations), "a", {}, deviations);
+    std::string all;
+    for (const Deviation& d : deviations) all += to_string(d) + "\n";
+    return all;
+  };
+  EXPECT_NE(told("9 1 0  7 2 0  9 1 0").find("7 to 9 mW/sr"), std::string::npos);
+  EXPECT_NE(told("9 1 0  9 2 0  9 3 0").find("differ by up to 2 mW/sr"), std::string::npos);
+}
+
 // Type B: polar axis horizontal. V turns the plane from the nadir towards the 0-degree plane, H is
 // the angle in that plane, towards 90 degrees if counter-clockwise.
 TEST(Ies, TypeB) {
@@ -399,6 +413,17 @@ TEST(Ies, TypeB) {
   const Luminaire c = testing::from_ies(testing::ies_text(light));
   EXPECT_LT(std::abs(value(c, 20, 10) / value(light, 20, 10) - 1), 0.01);
   EXPECT_NEAR(flux(c.diagram) / flux(light.diagram), 1, 0.01);
+}
+
+// A type B file that is lit up to the horizon and dark above it: 1 cd over a hemisphere.
+TEST(Ies, TypeBKeepsItsEdgeAtTheHorizon) {
+  const Luminaire light = testing::from_ies(plain("-90 0 90", "1 1 1  1 1 1  1 1 1", "3 3", "-90 0 90", "2"));
+  for (const Luminaire& l : {light, testing::from_ies(testing::ies_text(light)),
+                             testing::from_eulumdat(testing::eulumdat_text(light))}) {
+    EXPECT_NEAR(flux(l.diagram) / (2 * pi<double>), 1, 1e-4);
+    EXPECT_NEAR(l.diagram.intensity(LightFrame{}.direction(rad(33), rad(89.9))), 1, 1e-6);
+    EXPECT_NEAR(l.diagram.intensity(LightFrame{}.direction(rad(33), rad(90.1))), 0, 1e-6);
+  }
 }
 
 // Type A: polar axis vertical, (0, 0) horizontal in the 0-degree plane.

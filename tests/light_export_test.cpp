@@ -7,6 +7,7 @@
 #include <gonio/mapping/light/octahedral.h>
 #include <gonio/mapping/light/photometry.h>
 #include <gonio/mapping/light/polar_svg.h>
+#include <gonio/mapping/light/text_scanner.h>
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -343,6 +344,30 @@ TEST(LightExport, PolarDiagramShowsWhatItSays) {
   EXPECT_NE(escaped.find("&lt;Gl\xC3\xBChlampe &amp; &quot;Co&quot;&gt;"), std::string::npos);
   klm.planes.clear();
   EXPECT_THROW(polar_svg(light, klm), Error);
+}
+
+// The outermost circle is I max or more, whether a plane that is drawn has it or not.
+TEST(LightExport, PolarAxisHoldsTheMaximum) {
+  const Luminaire light = testing::asymmetric();  // I max is 1000 cd at C 30
+  PolarPlot plot;
+  for (const std::vector<double>& planes :
+       {std::vector<double>{rad(30)}, {rad(31)}, {0, rad(90)}, {rad(120)}}) {
+    plot.planes = planes;
+    const PolarScale scale = polar_scale(light, plot);
+    EXPECT_GE(230 / scale.radius_per_unit, 1000 * (1 - 1e-9));
+    EXPECT_LE(230 / scale.radius_per_unit, 1400);
+    EXPECT_NE(polar_svg(light, plot).find(">1000<"), std::string::npos);
+  }
+}
+
+TEST(LightExport, SmallValuesAreNotRoundedAway) {
+  Luminaire light = testing::lambertian();
+  for (double& v : light.diagram.cd) v *= 1e-6;
+  EXPECT_NE(polar_svg(light).find("cd, flux 0.001 lm<"), std::string::npos);
+  EXPECT_EQ(format_quantity(0), "0.00");
+  EXPECT_EQ(format_quantity(0.0012345), "0.001234");
+  EXPECT_EQ(format_quantity(1234.567), "1234.57");
+  EXPECT_EQ(format_number(-0.0), "0");
 }
 
 TEST(LightExport, PbrtSnippetNamesTheImage) {
