@@ -74,14 +74,16 @@ TEST(Ies, SecondFactorIsOneTo1991) {
                         Case{"Ies: LM-63-2019", 2019, 1, 1}, Case{"IESNA:LM-63-2040", 0, 1, 2}}) {
     SCOPED_TRACE(c.first_line);
     Deviations deviations;
-    const IesFile f = read_ies(std::string(c.first_line) +
-                                   "\n[TEST] t\n[TESTLAB] l\n[ISSUEDATE] d\n[MANUFAC] m\nTILT=NONE\n"
-                                   "1 -1 2 3 1 1 2 0 0 0\n1 0.5 10\n0 45 90\n0\n9 6 3\n",
-                               "a", deviations);
+    const IesFile f =
+        read_ies(std::string(c.first_line) +
+                     "\n[TEST] t\n[TESTLAB] l\n[ISSUEDATE] d\n[MANUFAC] m\nTILT=NONE\n"
+                     "1 -1 2 3 1 1 2 0 0 0\n1 0.5 10\n0 45 90\n0\n9 6 3\n",
+                 "a", deviations);
     EXPECT_EQ(f.edition(), c.edition);
     EXPECT_DOUBLE_EQ(f.factor(), 2 * c.factor);
     int found = 0;
-    for (const Deviation& d : deviations) found += d.field == "first line" || d.field == "future use";
+    for (const Deviation& d : deviations)
+      found += d.field == "first line" || d.field == "future use";
     EXPECT_EQ(found, c.deviations);
   }
 }
@@ -111,8 +113,7 @@ TEST(Ies, KeywordsAndTiltAreReadInAnySpelling) {
     EXPECT_EQ(deviations.size(), 1u);
   }
   Deviations deviations;
-  const IesFile included =
-      read_ies(with_tilt("Tilt = Include\n1 2 0 90 1 0.5"), "a", deviations);
+  const IesFile included = read_ies(with_tilt("Tilt = Include\n1 2 0 90 1 0.5"), "a", deviations);
   EXPECT_EQ(included.tilt_factors, (std::vector<double>{1, 0.5}));
   EXPECT_EQ(read_ies(with_tilt("TILT= lamp.tlt"), "a", deviations).tilt_file, "lamp.tlt");
   IesFile file;
@@ -139,9 +140,10 @@ TEST(Ies, CommasAreReadAsTheCountsHaveIt) {
     EXPECT_EQ(cd(text), (Values{100.5, 90.5, 70.5})) << values;
     EXPECT_EQ(counts(text), 1) << values;
   }
-  EXPECT_NEAR(flux(testing::from_ies(plain("0", "100,5 90,5 70,5 40,5 0,0", "5 1", "0 22.5 45 67.5 90"))
-                       .diagram),
-              testing::rotational_flux({0, 22.5, 45, 67.5, 90}, {100.5, 90.5, 70.5, 40.5, 0}), 1e-9);
+  EXPECT_NEAR(
+      flux(testing::from_ies(plain("0", "100,5 90,5 70,5 40,5 0,0", "5 1", "0 22.5 45 67.5 90"))
+               .diagram),
+      testing::rotational_flux({0, 22.5, 45, 67.5, 90}, {100.5, 90.5, 70.5, 40.5, 0}), 1e-9);
   // Thousands.
   EXPECT_EQ(cd(plain("0", "1,234 1,100 950", "3 1")), (Values{1234, 1100, 950}));
   EXPECT_EQ(cd(plain("0", "1,234,567.5 12,100.25 950", "3 1")), (Values{1234567.5, 12100.25, 950}));
@@ -179,8 +181,9 @@ TEST(Ies, NumbersMissingOrLeftOverAreErrors) {
   EXPECT_EQ(message("9 1 0 9 2 0\nremarks, 1 2 3"), "accepted");
   EXPECT_NE(message("9 1 0 9 2").find("after 5 numbers, expected 6"), std::string::npos)
       << message("9 1 0 9 2");
-  EXPECT_NE(message("9 1 0 9 2 0 7 8").find("more numbers after the 6 of 2 horizontal and 3 vertical "
-                                            "angles: \"7 8\""),
+  EXPECT_NE(message("9 1 0 9 2 0 7 8")
+                .find("more numbers after the 6 of 2 horizontal and 3 vertical "
+                      "angles: \"7 8\""),
             std::string::npos)
       << message("9 1 0 9 2 0 7 8");
 }
@@ -191,7 +194,8 @@ TEST(Ies, SymmetryIsThatOfTheFrame) {
     for (double zero : {90.0, 0.0, 180.0, -90.0}) {
       LightOptions options;
       options.ies_zero = rad(zero);
-      const Luminaire light = testing::from_ies(plain(range, "9 1 0  9 2 0  9 3 0", "3 3"), options);
+      const Luminaire light =
+          testing::from_ies(plain(range, "9 1 0  9 2 0  9 3 0", "3 3"), options);
       EXPECT_NE(light.symmetry, LightSymmetry::none);
       EXPECT_EQ(light.symmetry, find_symmetry(light.diagram)) << range << " at " << zero;
     }
@@ -417,7 +421,8 @@ TEST(Ies, TypeB) {
 
 // A type B file that is lit up to the horizon and dark above it: 1 cd over a hemisphere.
 TEST(Ies, TypeBKeepsItsEdgeAtTheHorizon) {
-  const Luminaire light = testing::from_ies(plain("-90 0 90", "1 1 1  1 1 1  1 1 1", "3 3", "-90 0 90", "2"));
+  const Luminaire light =
+      testing::from_ies(plain("-90 0 90", "1 1 1  1 1 1  1 1 1", "3 3", "-90 0 90", "2"));
   for (const Luminaire& l : {light, testing::from_ies(testing::ies_text(light)),
                              testing::from_eulumdat(testing::eulumdat_text(light))}) {
     EXPECT_NEAR(flux(l.diagram) / (2 * pi<double>), 1, 1e-4);

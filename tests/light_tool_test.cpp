@@ -104,21 +104,25 @@ TEST_F(LightTool, UnitsAreThoseOfTheFile) {
 }
 
 TEST_F(LightTool, ValidateTellsInTheUnitOfTheFile) {
-  std::ofstream(folder_ / "uv.ies") << "IESNA:LM-63-2002\n[_INTENSITYUNITS] mW/sr\n[_TOTALLUMINAIRELUMENS] "
-                                       "0.001\nTILT=NONE\n1 -1 1 3 3 1 2 0 0 0\n1 1 10\n0 45 90\n"
-                                       "0 90 180\n2e-4 1e-4 0\n1e-4 1e-4 0\n2e-4 1e-4 0\n";
+  std::ofstream(folder_ / "uv.ies")
+      << "IESNA:LM-63-2002\n[_INTENSITYUNITS] mW/sr\n[_TOTALLUMINAIRELUMENS] "
+         "0.001\nTILT=NONE\n1 -1 1 3 3 1 2 0 0 0\n1 1 10\n0 45 90\n"
+         "0 90 180\n2e-4 1e-4 0\n1e-4 1e-4 0\n2e-4 1e-4 0\n";
   ASSERT_EQ(run("light validate uv.ies"), 0) << read("err");
   EXPECT_NE(read("out").find("0.0001 to 0.0002 mW/sr"), std::string::npos) << read("out");
-  EXPECT_NE(read("out").find(" mW by quadrature, expected 0.001 as"), std::string::npos) << read("out");
+  EXPECT_NE(read("out").find(" mW by quadrature, expected 0.001 as"), std::string::npos)
+      << read("out");
   EXPECT_EQ(read("out").find(" cd"), std::string::npos) << read("out");
 }
 
-// Everything that info says is in the luminaire's frame, with digits for what is small, and zones that
-// hold no light hold 0.
+// Everything that info says is in the luminaire's frame, with digits for what is small, and zones
+// that hold no light hold 0.
 TEST_F(LightTool, InfoSaysWhatTheFileHolds) {
   const auto file = [&](const std::string& angles, const std::string& values) {
-    std::ofstream(folder_ / "a.ies") << "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 3 1 2 0 0 0\n1 1 10\n0 45 90\n"
-                                     << angles << "\n" << values;
+    std::ofstream(folder_ / "a.ies")
+        << "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 3 1 2 0 0 0\n1 1 10\n0 45 90\n"
+        << angles << "\n"
+        << values;
     EXPECT_EQ(run("light info a.ies"), 0) << read("err");
     return read("out");
   };
@@ -131,7 +135,9 @@ TEST_F(LightTool, InfoSaysWhatTheFileHolds) {
   out = file("90 180 270", "1e-3 2e-3 0\n1e-3 9e-4 0\n1e-3 1e-4 0\n");
   EXPECT_NE(out.find("symmetry: C0-C180\n"), std::string::npos) << out;
   EXPECT_NE(out.find("0.002 cd at C 180"), std::string::npos) << out;
-  EXPECT_NE(out.find("hint             the light is mirrored at the 90-270 plane"), std::string::npos) << out;
+  EXPECT_NE(out.find("hint             the light is mirrored at the 90-270 plane"),
+            std::string::npos)
+      << out;
   EXPECT_NE(out.find("--ies-zero 0"), std::string::npos) << out;
   EXPECT_NE(out.find("flux             0.003857 lm"), std::string::npos) << out;
 }
@@ -157,10 +163,12 @@ TEST_F(LightTool, OtherFilesAreNamedAsWhatTheyAre) {
   file("a.binary", std::string("\x5a\0\0\0\x5a\0\0\0\xb4\0\0\0", 12));
   file("fit.json", "{\"version\": 1}");
   file("pointer.ies", "version https://git-lfs.github.com/spec/v1\noid sha256:a\nsize 1\n");
-  ASSERT_EQ(run("light convert in.ldt image.exr --layout latlong --resolution 8"), 0) << read("err");
+  ASSERT_EQ(run("light convert in.ldt image.exr --layout latlong --resolution 8"), 0)
+      << read("err");
   for (const std::string verb : {"info", "convert", "plot", "sample", "compare"}) {
     const std::string out = verb == "convert" ? " x.ldt" : verb == "plot" ? " x.svg" : "";
-    refused("light " + verb + " a.bsdf" + out, "a.bsdf: found a measured BRDF (RGL), which gonio info");
+    refused("light " + verb + " a.bsdf" + out,
+            "a.bsdf: found a measured BRDF (RGL), which gonio info");
     refused("light " + verb + " a.mbsdf" + out, "a.mbsdf: found a measured BRDF (MBSDF)");
     refused("light " + verb + " a.binary" + out, "a.binary: found a measured BRDF (MERL)");
     refused("light " + verb + " fit.json" + out, "found a JSON file");

@@ -140,7 +140,8 @@ void check_order(const TextScanner& scanner, const std::vector<double>& c) {
   int steps_back = 0;
   for (std::size_t i = 1; i < c.size(); ++i) {
     steps_back += c[i] <= c[i - 1];
-    if (steps_back > (c.front() > c.back() ? 1 : 0) || std::abs(c[i] - c.front()) > 360 + same_plane)
+    if (steps_back > (c.front() > c.back() ? 1 : 0) ||
+        std::abs(c[i] - c.front()) > 360 + same_plane)
       scanner.fail("C angles", format_number(c[i]) + " after " + format_number(c[i - 1]),
                    "ascending angles within one turn");
   }
@@ -195,6 +196,8 @@ void check(const EulumdatFile& f, std::size_t lamp_sets, Deviations& deviations)
   const auto note = [&](const char* field, const std::string& found, const char* expected) {
     deviations.push_back({0, field, found, expected});
   };
+  if (f.c.size() > 721) note("Mc", std::to_string(f.c.size()), "at most 721");
+  if (f.gamma.size() > 361) note("Ng", std::to_string(f.gamma.size()), "at most 361");
   if (f.type < 1) note("Ityp", std::to_string(f.type), "1 to 3");
   if (f.c_step > 0 && f.c.size() > 1 && !even(f.c, f.c_step))
     note("Dc", format_number(f.c_step),
@@ -202,8 +205,7 @@ void check(const EulumdatFile& f, std::size_t lamp_sets, Deviations& deviations)
   if (f.g_step > 0 && !even(f.gamma, f.g_step))
     note("Dg", format_number(f.g_step),
          "the distance of the G angles, or 0 if uneven; the angles are used");
-  if (f.symmetry != 1 && f.c.front() != 0)
-    note("first C angle", format_number(f.c.front()), "0");
+  if (f.symmetry != 1 && f.c.front() != 0) note("first C angle", format_number(f.c.front()), "0");
   if (f.c.back() >= 360) note("last C angle", format_number(f.c.back()), "less than 360");
   if (lamp_sets == 0) note("lamp sets", "none", "1 to 20");
   for (const EulumdatFile::LampSet& set : f.lamp_sets) {
@@ -224,9 +226,9 @@ EulumdatFile read(Fields& in, Deviations& deviations) {
   f.company = in.text("company", 78);
   f.type = in.integer("Ityp", 0, 3);
   f.symmetry = in.integer("Isym", 0, 4);
-  const int mc = in.integer("Mc", 1, 721);
+  const int mc = in.integer("Mc", 1, most_eulumdat_angles);
   f.c_step = in.number_or("Dc", 0);
-  const int ng = in.integer("Ng", 2, 3601);
+  const int ng = in.integer("Ng", 2, most_eulumdat_angles);
   f.g_step = in.number_or("Dg", 0);
   f.report = in.text("measurement report", 78);
   f.name = in.text("luminaire name", 78);

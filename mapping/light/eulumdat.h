@@ -10,6 +10,10 @@
 
 namespace gonio {
 
+/// The most planes, and the most gamma angles, that read_eulumdat() takes: what an IES file can
+/// have, and the dark ones that are put around them.
+inline constexpr int most_eulumdat_angles = 10004;
+
 /// An EULUMDAT file (.ldt) as it stands, field by field: nothing scaled or unfolded.
 struct EulumdatFile {
   /// One of the alternative equipments of a luminaire.

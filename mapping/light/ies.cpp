@@ -11,7 +11,8 @@ namespace {
 
 constexpr int most_angles = 10000;
 
-constexpr const char* comma_names[] = {"between numbers", "between thousands", "as decimal points"};
+constexpr const char* comma_names[] = {"between numbers only", "between thousands",
+                                       "used as decimal points"};
 
 bool starts_with(std::string_view text, std::string_view start) {
   return text.substr(0, start.size()) == start;
@@ -49,10 +50,10 @@ void read_tilt_table(TextScanner& scanner, IesFile& file) {
   file.tilt_factors = scanner.next_numbers("TILT: factors", pairs);
 }
 
-/// Angles that no type of file has come from commas that were misread.
+/// Angles that no file has come from commas that were misread.
 void check_range(const TextScanner& scanner, const std::vector<double>& angles, const char* field) {
   for (double angle : angles)
-    if (std::abs(angle) > 360) scanner.fail(field, format_number(angle), "at most 360 degrees");
+    if (std::abs(angle) > 720) scanner.fail(field, format_number(angle), "at most 720 degrees");
 }
 
 /// Everything from the line after TILT= to the last candela value.
@@ -61,10 +62,10 @@ void read_numbers(TextScanner& scanner, IesFile& file) {
   file.lamps = scanner.next_integer("number of lamps", 0, 1000000);
   file.lumens_per_lamp = scanner.next_number("lumens per lamp");
   file.multiplier = scanner.next_number("candela multiplier");
-  const auto verticals = static_cast<std::size_t>(
-      scanner.next_integer("number of vertical angles", 1, most_angles));
-  const auto horizontals = static_cast<std::size_t>(
-      scanner.next_integer("number of horizontal angles", 1, most_angles));
+  const auto verticals =
+      static_cast<std::size_t>(scanner.next_integer("number of vertical angles", 1, most_angles));
+  const auto horizontals =
+      static_cast<std::size_t>(scanner.next_integer("number of horizontal angles", 1, most_angles));
   file.type = static_cast<IesFile::Type>(scanner.next_integer("photometric type", 1, 3));
   file.units = scanner.next_integer("units type", 1, 2);
   file.width = scanner.next_number("luminaire width");
@@ -106,8 +107,9 @@ Comma read_with_commas(TextScanner& scanner, IesFile& file, const Read& read) {
       if (failure.empty()) failure = error.what();
     }
   }
-  throw Error(failure + " (commas read as separators; as decimal points or between thousands they "
-                        "do not give the counts either)");
+  throw Error(failure +
+              " (commas read as separators; as decimal points or between thousands they "
+              "do not give the counts either)");
 }
 
 void check_header(const IesFile& file, Deviations& deviations) {
@@ -296,7 +298,7 @@ IesFile read_ies(std::string_view text, const std::string& name, Deviations& dev
   const Comma comma = read_with_commas(scanner, file, read_numbers);
   if (comma != Comma::separator)
     deviations.push_back({0, "commas", comma_names[static_cast<int>(comma)],
-                          "between numbers; read as found, since the counts come out so"});
+                          "between numbers only; read as found, since the counts come out so"});
   if (!scanner.only_blanks_left())
     deviations.push_back({scanner.line(), "after the last candela value",
                           "\"" + scanner.rest() + "\"", "the end of the file; ignored"});

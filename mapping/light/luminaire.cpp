@@ -55,8 +55,7 @@ LightSymmetry ies_symmetry(const std::vector<double>& horizontal, Deviations& de
   if (is(span, 180) && multiple(first, 90)) return LightSymmetry::c90_c270;
   if (is(span, 360)) return LightSymmetry::none;
   deviations.push_back(
-      {0, "horizontal angles",
-       format_number(first) + " to " + format_number(horizontal.back()),
+      {0, "horizontal angles", format_number(first) + " to " + format_number(horizontal.back()),
        "0 to 90, 0 to 180, 90 to 270 or 0 to 360; closed to a full turn by interpolation"});
   return LightSymmetry::none;
 }
@@ -138,7 +137,8 @@ EulumdatLikeness eulumdat_likeness(std::string_view text) {
   struct Limit {
     int line, lowest, highest;
   };
-  constexpr Limit limits[] = {{2, 0, 3}, {3, 0, 4}, {4, 1, 721}, {6, 2, 3601}};
+  constexpr Limit limits[] = {
+      {2, 0, 3}, {3, 0, 4}, {4, 1, most_eulumdat_angles}, {6, 2, most_eulumdat_angles}};
   bool in_range = true;
   std::size_t next = 0;
   for (int number = 1; number <= 7; ++number) {
@@ -149,7 +149,8 @@ EulumdatLikeness eulumdat_likeness(std::string_view text) {
       double value;
       if (!parse_number(text.substr(next, end - next), Comma::decimal, value))
         return EulumdatLikeness::none;
-      in_range = in_range && value == std::floor(value) && value >= limit.lowest && value <= limit.highest;
+      in_range =
+          in_range && value == std::floor(value) && value >= limit.lowest && value <= limit.highest;
     }
     next = end + (text.substr(end, 2) == "\r\n" ? 2 : 1);
   }

@@ -17,7 +17,7 @@ namespace gonio {
 /// CIE and EULUMDAT, across the lamp axis. The 0-degree plane of IES files lies along the lamp
 /// axis: it is C90 here (see docs/lights.md, with a picture).
 struct Luminaire {
-  LightDiagram diagram;                          ///< [cd]
+  LightDiagram diagram;  ///< [cd]
   /// As the file states it, in this frame: the planes are not the file's labels.
   LightSymmetry symmetry = LightSymmetry::none;
   std::string format;  ///< "IES" or "EULUMDAT" or "EXR", with version and photometric type
@@ -63,7 +63,8 @@ enum class LightFormat { unknown, ies, eulumdat };
 /// (without_utf16()).
 LightFormat light_format(std::string_view text) noexcept;
 
-/// Reads an IES or EULUMDAT file, told by content, in ASCII, UTF-8 or UTF-16. A TILT file is looked for beside it.
+/// Reads an IES or EULUMDAT file, told by content, in ASCII, UTF-8 or UTF-16. A TILT file is looked
+/// for beside it.
 /// @throws Error naming the file if it cannot be read, is neither, or is broken.
 Luminaire load_light(const std::filesystem::path& path, const LightOptions& options,
                      Deviations& deviations);
@@ -75,8 +76,9 @@ Luminaire load_light(const std::filesystem::path& path, const LightOptions& opti
 IesFile to_ies(const Luminaire& luminaire, const LightOptions& options = {});
 
 /// The luminaire as an EULUMDAT file, with the strongest symmetry that holds and whose planes other
-/// programs find by index as well; without symmetry where they would not. Intensities are per 1000 lm of the lamps, or, where these are
-/// unknown, of the luminaire (absolute photometry, number of lamps -1). Direct ratios are left 0.
+/// programs find by index as well; without symmetry where they would not. Intensities are per 1000
+/// lm of the lamps, or, where these are unknown, of the luminaire (absolute photometry, number of
+/// lamps -1). Direct ratios are left 0.
 EulumdatFile to_eulumdat(const Luminaire& luminaire);
 
 }  // namespace gonio

@@ -73,8 +73,8 @@ Photometry photometry(const LightDiagram& diagram) {
       std::max_element(diagram.cd.begin(), diagram.cd.end()) - diagram.cd.begin());
   p.max_cd = diagram.cd[best];
   const std::size_t n = diagram.gamma.size();
-  p.max_at = to_light_angles(
-      LightFrame{}, diagram.frame.direction(diagram.c[best / n], diagram.gamma[best % n]));
+  p.max_at = to_light_angles(LightFrame{},
+                             diagram.frame.direction(diagram.c[best / n], diagram.gamma[best % n]));
   if (std::sin(p.max_at.gamma) < 1e-9) p.max_at.c = 0;
   p.c0 = spread(d, 0);
   p.c90 = spread(d, pi<double> / 2);

@@ -105,8 +105,7 @@ std::string polar_svg(const Luminaire& light, const PolarPlot& plot) {
       << "\" fill=\"#fff\"/>\n<text x=\"300\" y=\"28\" text-anchor=\"middle\" font-size=\"16\">"
       << escaped(shortened(title, 70))
       << "</text>\n<text x=\"300\" y=\"48\" text-anchor=\"middle\" fill=\"#555\">" << escaped(unit)
-      << ", flux " << format_quantity(p.flux) << " "
-      << escaped(flux_unit(light)) << "</text>\n";
+      << ", flux " << format_quantity(p.flux) << " " << escaped(flux_unit(light)) << "</text>\n";
 
   // Circles and rays.
   const auto ray_end = [&](double gamma, int side, double r) {

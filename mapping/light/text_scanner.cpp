@@ -47,7 +47,8 @@ void append_utf8(std::string& text, unsigned c) {
   } else if (c < 0x10000) {
     add(0xE0 | c >> 12), add(0x80 | (c >> 6 & 0x3F)), add(0x80 | (c & 0x3F));
   } else {
-    add(0xF0 | c >> 18), add(0x80 | (c >> 12 & 0x3F)), add(0x80 | (c >> 6 & 0x3F)), add(0x80 | (c & 0x3F));
+    add(0xF0 | c >> 18), add(0x80 | (c >> 12 & 0x3F)), add(0x80 | (c >> 6 & 0x3F)),
+        add(0x80 | (c & 0x3F));
   }
 }
 
@@ -77,8 +78,10 @@ bool parse_number(std::string_view text, Comma comma, double& value) {
 std::string without_utf16(std::string bytes) {
   const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(bytes[k]); };
   if (bytes.size() < 4) return bytes;
-  const bool little = (byte(0) == 0xFF && byte(1) == 0xFE) || (byte(0) > 0 && byte(1) == 0 && byte(2) > 0 && byte(3) == 0);
-  const bool big = (byte(0) == 0xFE && byte(1) == 0xFF) || (byte(0) == 0 && byte(1) > 0 && byte(2) == 0 && byte(3) > 0);
+  const bool little = (byte(0) == 0xFF && byte(1) == 0xFE) ||
+                      (byte(0) > 0 && byte(1) == 0 && byte(2) > 0 && byte(3) == 0);
+  const bool big = (byte(0) == 0xFE && byte(1) == 0xFF) ||
+                   (byte(0) == 0 && byte(1) > 0 && byte(2) == 0 && byte(3) > 0);
   if (!little && !big) return bytes;
   const auto unit = [&](std::size_t k) {
     return static_cast<unsigned>(little ? byte(k) | byte(k + 1) << 8 : byte(k) << 8 | byte(k + 1));
@@ -86,7 +89,8 @@ std::string without_utf16(std::string bytes) {
   std::string text;
   for (std::size_t k = unit(0) == 0xFEFF ? 2 : 0; k + 1 < bytes.size(); k += 2) {
     unsigned c = unit(k);
-    if (c >= 0xD800 && c < 0xDC00 && k + 3 < bytes.size() && unit(k + 2) >= 0xDC00 && unit(k + 2) < 0xE000) {
+    if (c >= 0xD800 && c < 0xDC00 && k + 3 < bytes.size() && unit(k + 2) >= 0xDC00 &&
+        unit(k + 2) < 0xE000) {
       c = 0x10000 + ((c - 0xD800) << 10) + (unit(k + 2) - 0xDC00);
       k += 2;
     }

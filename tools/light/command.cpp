@@ -23,7 +23,8 @@ const std::map<std::string, LightFilter> filters{{"bilinear", LightFilter::bilin
 std::string other_kind(const std::string& file) {
   if (!std::filesystem::is_regular_file(file)) return {};
   if (is_exr(file))
-    return "an EXR file without a luminaire (gonio info takes stack files; images are only written)";
+    return "an EXR file without a luminaire (gonio info takes stack files; images are only "
+           "written)";
   switch (sniff_format(file)) {
     case TableFormat::merl:
       return "a measured BRDF (MERL), which gonio info and gonio convert take";
@@ -34,8 +35,7 @@ std::string other_kind(const std::string& file) {
     case TableFormat::unknown:
       break;
   }
-  if (is_model_file(file))
-    return "a JSON file (gonio info takes fits, gonio render takes scenes)";
+  if (is_model_file(file)) return "a JSON file (gonio info takes fits, gonio render takes scenes)";
   if (read_bytes(file, 40).find("version https://git-lfs") == 0)
     return "a Git LFS pointer, which only names the file (git lfs pull brings it)";
   return {};

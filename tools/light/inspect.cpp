@@ -38,8 +38,9 @@ void light_info(const LightCommand& o) {
     line("angles", text("%zu C planes, %zu gamma, symmetry: ", light.diagram.c.size() - 1,
                         light.diagram.gamma.size()) +
                        to_string(light.symmetry));
-    line("flux", format_quantity(p.flux) + " " + total +
-                     text(", %.1f %% of it down", p.flux > 0 ? 100 * p.downward_flux / p.flux : 0.0));
+    line("flux",
+         format_quantity(p.flux) + " " + total +
+             text(", %.1f %% of it down", p.flux > 0 ? 100 * p.downward_flux / p.flux : 0.0));
     if (light.stated_lumens)
       line("stated flux", format_quantity(*light.stated_lumens) + " " + total +
                               text(" (%+.2f %%)", 100 * (p.flux / *light.stated_lumens - 1)));
@@ -50,9 +51,9 @@ void light_info(const LightCommand& o) {
       line("output ratio", text("%.2f %%", 100 * *ratio));
     if (const auto e = efficacy(light))  // of radiometric files the efficiency
       line("efficacy", format_quantity(*e) + " " + total + text("/W at %.4g W", light.watts));
-    line("I max", format_quantity(p.max_cd) + " " + light.unit +
-                      text(" at C %.4g, gamma %.4g degrees", p.max_at.c / degree,
-                           p.max_at.gamma / degree));
+    line("I max",
+         format_quantity(p.max_cd) + " " + light.unit +
+             text(" at C %.4g, gamma %.4g degrees", p.max_at.c / degree, p.max_at.gamma / degree));
     line("beam angle", text("%.1f degrees in C0-C180, %.1f in C90-C270", p.c0.beam / degree,
                             p.c90.beam / degree));
     line("field angle", text("%.1f degrees in C0-C180, %.1f in C90-C270", p.c0.field / degree,
