@@ -67,7 +67,7 @@ TEST(Ies, SecondFactorIsOneTo1991) {
   };
   for (const Case& c : {Case{"IESNA91", 1991, 0.5, 0}, Case{"IESNA:LM-63-1991", 1991, 0.5, 0},
                         Case{"iesna91", 1991, 0.5, 1}, Case{"IESNA:LM-63-1986", 1986, 0.5, 0},
-                        Case{"a label", 1986, 0.5, 1}, Case{"IES lamps", 1986, 0.5, 1},
+                        Case{"a label", 1986, 0.5, 1}, Case{"IES 400 W lamps", 1986, 0.5, 1},
                         Case{"IESNA:LM-63-1995", 1995, 1, 1}, Case{"IESNA95", 1995, 1, 2},
                         Case{"IESNA:LM-63-2002", 2002, 1, 1}, Case{"iesna:lm-63-2002", 2002, 1, 2},
                         Case{"ANSI/IESNA LM-63-02", 2002, 1, 2}, Case{"IES:LM-63-2019", 2019, 1, 0},

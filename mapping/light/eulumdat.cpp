@@ -147,43 +147,43 @@ void check_order(const TextScanner& scanner, const std::vector<double>& c) {
   }
 }
 
+/// The number of planes that the symmetry of `f` leaves in the file.
+std::size_t planes_expected(const EulumdatFile& f, Deviations& deviations) {
+  const std::size_t mc = f.c.size();
+  if (f.symmetry < 2) return f.symmetry == 1 ? 1 : mc;
+  const Planes planes = planes_of(f.c, f.symmetry);
+  if (planes.stored == planes.c.size()) {
+    if (mc > 1)
+      deviations.push_back(
+          {0, "Mc", std::to_string(mc) + ", the stored planes alone", "the number of all planes"});
+    return planes.stored;
+  }
+  // Where no plane lies in the plane of symmetry the first of the next half is stored too.
+  const std::size_t by_index = mc / (f.symmetry == 4 ? 4 : 2) + 1;
+  return f.intensity.size() == by_index * f.gamma.size() ? by_index : planes.stored;
+}
+
 /// Settles which planes the intensities of `f` belong to: their number says it.
-void check_planes(const Fields& in, EulumdatFile& f, Deviations& deviations) {
-  const TextScanner& scanner = in.scanner();
+void check_planes(const TextScanner& scanner, EulumdatFile& f, Deviations& deviations) {
   check_order(scanner, f.c);
-  const std::size_t ng = f.gamma.size(), mc = f.c.size(), found = f.intensity.size();
-  const auto note = [&](const char* field, const std::string& what, const char* expected) {
-    deviations.push_back({0, field, what, expected});
-  };
-  std::size_t expected = f.symmetry == 1 ? 1 : mc;
-  bool partial = false;  // the stored planes alone are listed
-  if (f.symmetry >= 2) {
-    const Planes planes = planes_of(f.c, f.symmetry);
-    expected = planes.stored;
-    partial = planes.stored == planes.c.size();
-    // Where no plane lies in the plane of symmetry the first of the next half is stored too.
-    const std::size_t by_index = mc / (f.symmetry == 4 ? 4 : 2) + 1;
-    if (!partial && found == by_index * ng) expected = by_index;
-    if (partial && mc > 1)
-      note("Mc", std::to_string(mc) + ", the stored planes alone", "the number of all planes");
-  }
-  if (found == expected * ng) {
-    if (f.symmetry == 0 && widest_gap(planes_in(f.c, {0, 360})) > 180 - same_plane && mc > 1)
-      note("C angles", format_number(f.c.front()) + " to " + format_number(f.c.back()),
-           "a full turn; closed by interpolation");
-    return;
-  }
-  if (found == mc * ng && widest_gap(planes_in(f.c, {0, 360})) < 180 - same_plane) {
-    note("Isym", std::to_string(f.symmetry) + ", but intensities of all planes",
-         "those of the stored planes only; all are used, as with 0");
+  const std::size_t ng = f.gamma.size(), found = f.intensity.size();
+  const std::size_t expected = planes_expected(f, deviations);
+  const bool closed = f.c.size() == 1 || widest_gap(planes_in(f.c, {0, 360})) < 180 - same_plane;
+  if (found == f.c.size() * ng && found != expected * ng && closed) {
+    deviations.push_back({0, "Isym", std::to_string(f.symmetry) + ", but intensities of all planes",
+                          "those of the stored planes only; all are used, as with 0"});
     f.symmetry = 0;
-    return;
+  } else if (found != expected * ng) {
+    scanner.fail("luminous intensities",
+                 std::to_string(found) + " numbers up to " +
+                     (scanner.at_end() ? "the end of the file" : "\"" + scanner.rest() + "\""),
+                 std::to_string(expected * ng) + " (" + std::to_string(expected) + " planes of " +
+                     std::to_string(ng) + " gamma angles)");
+  } else if (f.symmetry == 0 && !closed) {
+    deviations.push_back({0, "C angles",
+                          format_number(f.c.front()) + " to " + format_number(f.c.back()),
+                          "a full turn; closed by interpolation"});
   }
-  scanner.fail("luminous intensities",
-               std::to_string(found) + " numbers up to " +
-                   (scanner.at_end() ? "the end of the file" : "\"" + scanner.rest() + "\""),
-               std::to_string(expected * ng) + " (" + std::to_string(expected) + " planes of " +
-                   std::to_string(ng) + " gamma angles)");
 }
 
 bool even(const std::vector<double>& angles, double step) {
@@ -260,7 +260,7 @@ EulumdatFile read(Fields& in, Deviations& deviations) {
   f.c = in.numbers("C angles", static_cast<std::size_t>(mc));
   f.gamma = in.numbers("G angles", static_cast<std::size_t>(ng));
   f.intensity = in.numbers_ahead("luminous intensities");
-  check_planes(in, f, deviations);
+  check_planes(in.scanner(), f, deviations);
   if (!in.scanner().only_blanks_left())
     deviations.push_back({in.scanner().line(), "after the last intensity",
                           "\"" + in.scanner().rest() + "\"", "the end of the file; ignored"});

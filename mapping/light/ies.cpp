@@ -38,7 +38,7 @@ std::optional<std::string> year_of(std::string_view line) {
   else
     return {};
   const std::size_t end = std::min(text.find_first_not_of("0123456789", year), text.size());
-  if (!named && end == year) return {};
+  if (!named && (end == year || end < text.size())) return {};
   return text.substr(year, end - year);
 }
 
