@@ -224,6 +224,9 @@ TEST(Eulumdat, NumberOfIntensitiesDecidesWhichPlanesThereAre) {
   values.insert(values.begin() + 5, "x");
   EXPECT_NE(message(2, four, values).find("found 5 numbers up to \"x "), std::string::npos)
       << message(2, four, values);
+  // As many as an index makes of uneven planes, but not all up to C180.
+  EXPECT_NE(message(2, {0, 5, 15, 90, 180, 270}, all).find("expected 20 (5 planes"),
+            std::string::npos);
   // Half of a turn that is not the half of the symmetry, and planes out of order.
   EXPECT_NE(message(3, {0, 90, 180}, three_planes).find("expected 8 (2 planes"), std::string::npos)
       << message(3, {0, 90, 180}, three_planes);

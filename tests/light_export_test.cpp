@@ -306,6 +306,23 @@ TEST(LightExport, OwnFileKeepsEverything) {
   EXPECT_EQ(load_light_exr(own.path()).diagram.cd, again.diagram.cd);
 }
 
+// In the frame of the library, whatever that of the diagram is.
+TEST(LightExport, SymmetryIsThatOfTheFrame) {
+  const TemporaryFile own("own.exr");
+  Luminaire light = testing::asymmetric();
+  light.diagram = testing::tabulate(36, 18, pi<double>, [](double c, double g) {
+    return 100 * (2 + std::sin(c)) * std::exp(-g);
+  });
+  save_light(own.path(), light);
+  EXPECT_EQ(load_light_exr(own.path()).symmetry, LightSymmetry::c90_c270);
+  light.diagram.frame.c0 = {0, 1, 0}, light.diagram.frame.c90 = {-1, 0, 0};  // a quarter turn
+  save_light(own.path(), light);
+  EXPECT_EQ(load_light_exr(own.path()).symmetry, LightSymmetry::c0_c180);
+  light.diagram.frame = {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}};  // type B
+  save_light(own.path(), light);
+  EXPECT_EQ(load_light_exr(own.path()).symmetry, LightSymmetry::none);
+}
+
 TEST(LightExport, BadFilesAreRefused) {
   const TemporaryFile own("own.exr"), other("oct.exr");
   save_octahedral(other.path(), bilinear_reconstruction(testing::lambertian().diagram), 16);

@@ -84,7 +84,7 @@ class Fields {
   bool points_ = false, could_be_thousands_ = false, decimal_commas_ = false;
 };
 
-constexpr double same_plane = 0.01;  // [deg]
+constexpr double same_plane = 5e-4;  // [deg]; abrupt edges are two planes a thousandth apart
 
 struct Range {
   double from, to;  // [deg]
@@ -160,7 +160,8 @@ std::size_t planes_expected(const EulumdatFile& f, Deviations& deviations) {
   }
   // Where no plane lies in the plane of symmetry the first of the next half is stored too.
   const std::size_t by_index = mc / (f.symmetry == 4 ? 4 : 2) + 1;
-  return f.intensity.size() == by_index * f.gamma.size() ? by_index : planes.stored;
+  const bool one_more = by_index > planes.stored && f.intensity.size() == by_index * f.gamma.size();
+  return one_more ? by_index : planes.stored;
 }
 
 /// Settles which planes the intensities of `f` belong to: their number says it.

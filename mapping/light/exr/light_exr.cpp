@@ -136,7 +136,8 @@ Luminaire read(const std::string& name) {
   light.number = text(header, "number");
   light.lamp = text(header, "lamp");
   light.unit = text(header, "unit");
-  light.symmetry = find_symmetry(d);
+  if (d.frame.nadir == LightFrame{}.nadir)  // none is told of type B, as of its IES file
+    light.symmetry = find_symmetry(in_frame(d, LightFrame{}));
   light.lamp_lumens = optional_number(header, "lampLumens");
   light.stated_lumens = optional_number(header, "statedLumens");
   light.downward_fraction = optional_number(header, "downwardFraction");
