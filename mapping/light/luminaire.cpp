@@ -294,7 +294,7 @@ Luminaire to_luminaire(const EulumdatFile& file, const std::string& name,
   return light;
 }
 
-LightFormat light_format(std::string_view text) noexcept {
+LightFormat light_format(std::string_view text) {
   if (text.substr(0, 3) == "\xEF\xBB\xBF") text.remove_prefix(3);
   const EulumdatLikeness likeness = eulumdat_likeness(text);
   if (likeness == EulumdatLikeness::in_range) return LightFormat::eulumdat;

@@ -61,7 +61,7 @@ enum class LightFormat { unknown, ies, eulumdat };
 /// Told by content: EULUMDAT files have the numbers of lines 2 to 7, IES files a line that begins
 /// with TILT= or a first line that names their standard. UTF-16 must be converted before
 /// (without_utf16()).
-LightFormat light_format(std::string_view text) noexcept;
+LightFormat light_format(std::string_view text);
 
 /// Reads an IES or EULUMDAT file, told by content, in ASCII, UTF-8 or UTF-16. A TILT file is looked
 /// for beside it.
