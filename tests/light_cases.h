@@ -80,6 +80,17 @@ inline Luminaire uplight() {
   return light;
 }
 
+/// The flux of a rotational luminaire between whose values the intensity is linear in gamma, in
+/// closed form: the integral of (a + b g) sin g is b sin g - (a + b g) cos g. Degrees.
+inline double rotational_flux(const std::vector<double>& gamma, const std::vector<double>& cd) {
+  double sum = 0;
+  for (std::size_t j = 0; j + 1 < gamma.size(); ++j) {
+    const double g0 = rad(gamma[j]), g1 = rad(gamma[j + 1]), b = (cd[j + 1] - cd[j]) / (g1 - g0);
+    sum += b * (std::sin(g1) - std::sin(g0)) - cd[j + 1] * std::cos(g1) + cd[j] * std::cos(g0);
+  }
+  return 2 * pi<double> * sum;
+}
+
 inline std::string ies_text(const Luminaire& light, const LightOptions& options = {}) {
   std::ostringstream stream;
   write_ies(stream, to_ies(light, options));

@@ -7,6 +7,7 @@
 #include <gonio/mapping/light/octahedral.h>
 #include <gonio/mapping/light/photometry.h>
 #include <gonio/mapping/light/polar_svg.h>
+#include <gonio/mapping/light/text_scanner.h>
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -305,6 +306,23 @@ TEST(LightExport, OwnFileKeepsEverything) {
   EXPECT_EQ(load_light_exr(own.path()).diagram.cd, again.diagram.cd);
 }
 
+// In the frame of the library, whatever that of the diagram is.
+TEST(LightExport, SymmetryIsThatOfTheFrame) {
+  const TemporaryFile own("own.exr");
+  Luminaire light = testing::asymmetric();
+  light.diagram = testing::tabulate(36, 18, pi<double>, [](double c, double g) {
+    return 100 * (2 + std::sin(c)) * std::exp(-g);
+  });
+  save_light(own.path(), light);
+  EXPECT_EQ(load_light_exr(own.path()).symmetry, LightSymmetry::c90_c270);
+  light.diagram.frame.c0 = {0, 1, 0}, light.diagram.frame.c90 = {-1, 0, 0};  // a quarter turn
+  save_light(own.path(), light);
+  EXPECT_EQ(load_light_exr(own.path()).symmetry, LightSymmetry::c0_c180);
+  light.diagram.frame = {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}};  // type B
+  save_light(own.path(), light);
+  EXPECT_EQ(load_light_exr(own.path()).symmetry, LightSymmetry::none);
+}
+
 TEST(LightExport, BadFilesAreRefused) {
   const TemporaryFile own("own.exr"), other("oct.exr");
   save_octahedral(other.path(), bilinear_reconstruction(testing::lambertian().diagram), 16);
@@ -343,6 +361,30 @@ TEST(LightExport, PolarDiagramShowsWhatItSays) {
   EXPECT_NE(escaped.find("&lt;Gl\xC3\xBChlampe &amp; &quot;Co&quot;&gt;"), std::string::npos);
   klm.planes.clear();
   EXPECT_THROW(polar_svg(light, klm), Error);
+}
+
+// The outermost circle is I max or more, whether a plane that is drawn has it or not.
+TEST(LightExport, PolarAxisHoldsTheMaximum) {
+  const Luminaire light = testing::asymmetric();  // I max is 1000 cd at C 30
+  PolarPlot plot;
+  for (const std::vector<double>& planes :
+       {std::vector<double>{rad(30)}, {rad(31)}, {0, rad(90)}, {rad(120)}}) {
+    plot.planes = planes;
+    const PolarScale scale = polar_scale(light, plot);
+    EXPECT_GE(230 / scale.radius_per_unit, 1000 * (1 - 1e-9));
+    EXPECT_LE(230 / scale.radius_per_unit, 1400);
+    EXPECT_NE(polar_svg(light, plot).find(">1000<"), std::string::npos);
+  }
+}
+
+TEST(LightExport, SmallValuesAreNotRoundedAway) {
+  Luminaire light = testing::lambertian();
+  for (double& v : light.diagram.cd) v *= 1e-6;
+  EXPECT_NE(polar_svg(light).find("cd, flux 0.001 lm<"), std::string::npos);
+  EXPECT_EQ(format_quantity(0), "0.00");
+  EXPECT_EQ(format_quantity(0.0012345), "0.001234");
+  EXPECT_EQ(format_quantity(1234.567), "1234.57");
+  EXPECT_EQ(format_number(-0.0), "0");
 }
 
 TEST(LightExport, PbrtSnippetNamesTheImage) {

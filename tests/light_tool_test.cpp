@@ -100,7 +100,83 @@ TEST_F(LightTool, UnitsAreThoseOfTheFile) {
   EXPECT_NE(read("out").find("flux             999.97 mW,"), std::string::npos) << read("out");
   EXPECT_EQ(read("out").find(" cd "), std::string::npos) << read("out");
   ASSERT_EQ(run("light plot uv.ies uv.svg"), 0) << read("err");
-  EXPECT_NE(read("uv.svg").find("mW/sr, flux 1000 mW<"), std::string::npos);
+  EXPECT_NE(read("uv.svg").find("mW/sr, flux 999.97 mW<"), std::string::npos);
+}
+
+TEST_F(LightTool, ValidateTellsInTheUnitOfTheFile) {
+  std::ofstream(folder_ / "uv.ies")
+      << "IESNA:LM-63-2002\n[_INTENSITYUNITS] mW/sr\n[_TOTALLUMINAIRELUMENS] "
+         "0.001\nTILT=NONE\n1 -1 1 3 3 1 2 0 0 0\n1 1 10\n0 45 90\n"
+         "0 90 180\n2e-4 1e-4 0\n1e-4 1e-4 0\n2e-4 1e-4 0\n";
+  ASSERT_EQ(run("light validate uv.ies"), 0) << read("err");
+  EXPECT_NE(read("out").find("0.0001 to 0.0002 mW/sr"), std::string::npos) << read("out");
+  EXPECT_NE(read("out").find(" mW by quadrature, expected 0.001 as"), std::string::npos)
+      << read("out");
+  EXPECT_EQ(read("out").find(" cd"), std::string::npos) << read("out");
+}
+
+// Everything that info says is in the luminaire's frame, with digits for what is small, and zones
+// that hold no light hold 0.
+TEST_F(LightTool, InfoSaysWhatTheFileHolds) {
+  const auto file = [&](const std::string& angles, const std::string& values) {
+    std::ofstream(folder_ / "a.ies")
+        << "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 3 1 2 0 0 0\n1 1 10\n0 45 90\n"
+        << angles << "\n"
+        << values;
+    EXPECT_EQ(run("light info a.ies"), 0) << read("err");
+    return read("out");
+  };
+  std::string out = file("0 90 180", "100 200 0\n100 90 0\n100 10 0\n");
+  EXPECT_NE(out.find("symmetry: C90-C270\n"), std::string::npos) << out;
+  EXPECT_NE(out.find("200.00 cd at C 90, gamma 45"), std::string::npos) << out;
+  EXPECT_EQ(out.find("hint"), std::string::npos) << out;
+  EXPECT_EQ(out.find("e-1"), std::string::npos) << out;  // 6.7e-16 beyond the horizon
+  EXPECT_NE(out.find(" 0 0 0 0 0 0 0 0 0 lm, every"), std::string::npos) << out;
+  out = file("90 180 270", "1e-3 2e-3 0\n1e-3 9e-4 0\n1e-3 1e-4 0\n");
+  EXPECT_NE(out.find("symmetry: C0-C180\n"), std::string::npos) << out;
+  EXPECT_NE(out.find("0.002 cd at C 180"), std::string::npos) << out;
+  EXPECT_NE(out.find("hint             the light is mirrored at the 90-270 plane"),
+            std::string::npos)
+      << out;
+  EXPECT_NE(out.find("--ies-zero 0"), std::string::npos) << out;
+  EXPECT_NE(out.find("flux             0.003857 lm"), std::string::npos) << out;
+}
+
+TEST_F(LightTool, Utf16IsRead) {
+  ASSERT_EQ(run("light convert in.ldt a.ies"), 0) << read("err");
+  const std::string ascii = read("a.ies");
+  std::string utf16 = "\xFF\xFE";
+  for (char c : ascii) utf16 += {c, '\0'};
+  std::ofstream(folder_ / "b.ies", std::ios::binary) << utf16;
+  ASSERT_EQ(run("light validate b.ies"), 0) << read("err");
+  EXPECT_NE(read("out").find("encoding: found UTF-16"), std::string::npos) << read("out");
+  EXPECT_EQ(load_light(folder_ / "b.ies").diagram.cd, load_light(folder_ / "a.ies").diagram.cd);
+  EXPECT_TRUE(is_light_file(folder_ / "b.ies"));
+}
+
+TEST_F(LightTool, OtherFilesAreNamedAsWhatTheyAre) {
+  const auto file = [&](const std::string& name, const std::string& start) {
+    std::ofstream(folder_ / name, std::ios::binary) << start << std::string(100, ' ');
+  };
+  file("a.bsdf", std::string("tensor_file\0\1\0", 14));
+  file("a.mbsdf", "NVIDIA ARC MBSDF V1\n");
+  file("a.binary", std::string("\x5a\0\0\0\x5a\0\0\0\xb4\0\0\0", 12));
+  file("fit.json", "{\"version\": 1}");
+  file("pointer.ies", "version https://git-lfs.github.com/spec/v1\noid sha256:a\nsize 1\n");
+  ASSERT_EQ(run("light convert in.ldt image.exr --layout latlong --resolution 8"), 0)
+      << read("err");
+  for (const std::string verb : {"info", "convert", "plot", "sample", "compare"}) {
+    const std::string out = verb == "convert" ? " x.ldt" : verb == "plot" ? " x.svg" : "";
+    refused("light " + verb + " a.bsdf" + out,
+            "a.bsdf: found a measured BRDF (RGL), which gonio info");
+    refused("light " + verb + " a.mbsdf" + out, "a.mbsdf: found a measured BRDF (MBSDF)");
+    refused("light " + verb + " a.binary" + out, "a.binary: found a measured BRDF (MERL)");
+    refused("light " + verb + " fit.json" + out, "found a JSON file");
+    refused("light " + verb + " pointer.ies" + out, "found a Git LFS pointer");
+    refused("light " + verb + " image.exr" + out, "found an EXR file without a luminaire");
+  }
+  EXPECT_EQ(run("light validate a.bsdf"), 1);
+  EXPECT_NE(read("out").find("found a measured BRDF (RGL)"), std::string::npos) << read("out");
 }
 
 TEST_F(LightTool, RefusesWithOneLine) {

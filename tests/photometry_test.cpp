@@ -59,6 +59,20 @@ TEST(Photometry, MaximumAndSpreadOfAnAsymmetricBeam) {
   EXPECT_NEAR(photometry(along).c0.beam, 2 * half, rad(0.5));
 }
 
+// Of a diagram with another axis, whose nodes lie between those of the frame.
+TEST(Photometry, FluxAndMaximumDoNotDependOnTheFrame) {
+  LightDiagram d = testing::tabulate(36, 45, pi<double>, [](double c, double g) {
+    return std::abs(g - rad(40)) < 0.01 && std::abs(c - rad(30)) < 0.01 ? 1000.0 : 10.0;
+  });
+  d.frame.nadir = {1, 0, 0}, d.frame.c0 = {0, 0, 1}, d.frame.c90 = {0, 1, 0};
+  const Photometry p = photometry(d);
+  EXPECT_EQ(p.max_cd, 1000);
+  EXPECT_LT(glm::length(LightFrame{}.direction(p.max_at.c, p.max_at.gamma) -
+                        d.frame.direction(rad(30), rad(40))),
+            1e-12);
+  EXPECT_DOUBLE_EQ(p.flux, flux(d));
+}
+
 TEST(Photometry, SpreadIsTheSmallestArc) {
   // Two wings with a dark nadir: the arc holds both, through the nadir.
   LightDiagram wings = testing::tabulate(1, 180, pi<double>, [](double, double g) {

@@ -10,6 +10,10 @@
 
 namespace gonio {
 
+/// The most planes, and the most gamma angles, that read_eulumdat() takes: what an IES file can
+/// have, and the dark ones that are put around them.
+inline constexpr int most_eulumdat_angles = 10004;
+
 /// An EULUMDAT file (.ldt) as it stands, field by field: nothing scaled or unfolded.
 struct EulumdatFile {
   /// One of the alternative equipments of a luminaire.
@@ -39,21 +43,23 @@ struct EulumdatFile {
   std::vector<LampSet> lamp_sets;
   std::array<double, 10> direct_ratios{};
 
-  std::vector<double> c;          ///< all Mc planes [deg]
+  std::vector<double> c;          ///< the Mc planes as listed [deg]
   std::vector<double> gamma;      ///< [deg]
   std::vector<double> intensity;  ///< stored planes x gamma.size(), [cd/klm]
 
-  /// The C of the stored planes [deg], in their order: with Isym 3 from 270 through 360 to 450, as
-  /// the format demands (mc1 = 3 Mc/4 + 1); reading them as 90 to 270 would turn the luminaire
-  /// round.
+  /// The C of the planes whose intensities the file holds [deg], in their order. They are found by
+  /// angle: with Isym 3 they run from 270 through 360 to 450 (the standard's mc1 = 3 Mc/4 + 1);
+  /// reading them as 90 to 270 would turn the luminaire round. Where all listed planes lie in the
+  /// other half (or quadrant), that is the one which is stored.
   std::vector<double> stored_c() const;
 };
 
-/// Parses the text of a file: one field a line, decimal point or comma, any line ends.
+/// Parses the text of a file: one field a line, any line ends. A comma is the decimal point, unless
+/// the file has points too and all its commas can be those of thousands. A file that lists the
+/// stored planes only is taken so; one that stores all planes in spite of its Isym gets Isym 0.
 /// @param name of the file, for messages.
 /// @throws Error naming line and field if it is not such a file: text where a number belongs,
-/// counts
-///   out of range, too few lines.
+///   counts out of range, other intensities than the planes have, planes out of order.
 EulumdatFile read_eulumdat(std::string_view text, const std::string& name, Deviations& deviations);
 
 /// Writes `file`; numbers have seven digits.

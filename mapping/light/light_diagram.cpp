@@ -1,5 +1,6 @@
 #include <gonio/mapping/error.h>
 #include <gonio/mapping/light/light_diagram.h>
+#include <gonio/mapping/light/unfold.h>
 
 #include <algorithm>
 #include <cmath>
@@ -37,6 +38,36 @@ double sine_moment(double g0, double g1, double a, double b) {
   const double odd = half > 1e-2 ? (std::sin(half) - half * std::cos(half)) / half
                                  : half * half / 3 * (1 - half * half / 10);
   return 2 * (mean * std::sin(half) * std::sin(middle) + slope * odd * std::cos(middle));
+}
+
+/// The distribution on lines every `step` of a frame with another axis. Where it ends abruptly at
+/// the horizon, as files of type B do whose planes end there, a parallel beside it keeps the edge.
+LightDiagram tabulated(const LightDiagram& d, const LightFrame& frame, double step) {
+  LightDiagram result;
+  result.frame = frame;
+  const int quarter = std::max(1, static_cast<int>(std::lround(pi<double> / 2 / step)));
+  for (int i = 0; i <= 4 * quarter; ++i) result.c.push_back(pi<double> / 2 * i / quarter);
+  const auto jumps = [&](double gamma) {
+    const double slack = 1e-3 * max_intensity(d);
+    return std::any_of(result.c.begin(), result.c.end(), [&](double c) {
+      return std::abs(d.intensity(frame.direction(c, gamma)) -
+                      d.intensity(frame.direction(c, pi<double> / 2))) > slack;
+    });
+  };
+  for (int j = 0; j <= 2 * quarter; ++j) {
+    const double before = pi<double> / 2 - edge_width, after = pi<double> / 2 + edge_width;
+    if (j == quarter && jumps(before)) result.gamma.push_back(before);
+    result.gamma.push_back(pi<double> / 2 * j / quarter);
+    if (j == quarter && jumps(after)) result.gamma.push_back(after);
+  }
+  for (std::size_t i = 0; i < result.c.size(); ++i)
+    for (double gamma : result.gamma) {
+      // One value at the poles and at both ends of the turn, whatever rounding does.
+      const bool pole = gamma == 0 || gamma == result.gamma.back();
+      const double c = pole || i + 1 == result.c.size() ? 0 : result.c[i];
+      result.cd.push_back(d.intensity(frame.direction(c, gamma)));
+    }
+  return result;
 }
 
 }  // namespace
@@ -160,22 +191,9 @@ LightDiagram without_dark_hemisphere(const LightDiagram& diagram) {
 }
 
 LightDiagram in_frame(const LightDiagram& d, const LightFrame& frame, double step) {
+  if (glm::dot(d.frame.nadir, frame.nadir) < 1 - 1e-12) return tabulated(d, frame, step);
   LightDiagram result;
   result.frame = frame;
-  if (glm::dot(d.frame.nadir, frame.nadir) < 1 - 1e-12) {
-    const int quarter = std::max(1, static_cast<int>(std::lround(pi<double> / 2 / step)));
-    for (int i = 0; i <= 4 * quarter; ++i) result.c.push_back(pi<double> / 2 * i / quarter);
-    for (int j = 0; j <= 2 * quarter; ++j) result.gamma.push_back(pi<double> / 2 * j / quarter);
-    for (int i = 0; i <= 4 * quarter; ++i)
-      for (int j = 0; j <= 2 * quarter; ++j) {
-        // One value at the poles and at both ends of the turn, whatever rounding does.
-        const bool pole = j == 0 || j == 2 * quarter;
-        const double c = pole ? 0 : result.c[static_cast<std::size_t>(i % (4 * quarter))];
-        result.cd.push_back(
-            d.intensity(frame.direction(c, result.gamma[static_cast<std::size_t>(j)])));
-      }
-    return result;
-  }
   result.gamma = d.gamma;
   if (d.rotational()) {
     result.c = d.c;

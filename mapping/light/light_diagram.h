@@ -69,7 +69,7 @@ LightDiagram without_dark_hemisphere(const LightDiagram& diagram);
 /// share the polar axis and its direction; otherwise tabulated anew every `step` [rad] (a divisor
 /// of pi/2).
 LightDiagram in_frame(const LightDiagram& diagram, const LightFrame& frame,
-                      double step = pi<double> / 180);
+                      double step = pi<double> / 360);
 
 /// The same distribution with parallels [rad] inserted where they are missing; exact.
 LightDiagram with_parallel(const LightDiagram& diagram, double gamma);

@@ -10,13 +10,21 @@
 namespace gonio {
 namespace {
 
-std::string read_text(const std::filesystem::path& path) {
+std::string read_bytes(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw Error(path.string() + ": cannot be opened");
   if (std::filesystem::is_directory(path))  // its stream opens, and throws what names no file
     throw Error(path.string() + ": found a folder, expected a file");
   std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
   if (stream.bad()) throw Error(path.string() + ": cannot be read");
+  return text;
+}
+
+/// The text of a photometric file.
+std::string read_text(const std::filesystem::path& path, Deviations& deviations) {
+  const std::string bytes = read_bytes(path);
+  std::string text = without_utf16(bytes);
+  if (text != bytes) deviations.push_back({0, "encoding", "UTF-16", "ASCII; converted"});
   return text;
 }
 
@@ -34,20 +42,61 @@ double tilt_factor(const IesFile& file, double degrees) {
 }
 
 /// The symmetry that the range of horizontal angles implies (LM-63-2002, 5.13 and annex; 1995 for
-/// 90-270).
+/// 90-270). A range that is turned by whole halves or quadrants implies the same.
 LightSymmetry ies_symmetry(const std::vector<double>& horizontal, Deviations& deviations) {
+  const double first = horizontal.front(), span = horizontal.back() - first;
   const auto is = [](double a, double b) { return std::abs(a - b) < 1e-6; };
-  const double first = horizontal.front(), last = horizontal.back();
+  const auto multiple = [&](double angle, double of) {
+    return is(angle, of * std::round(angle / of));
+  };
   if (horizontal.size() == 1) return LightSymmetry::rotational;
-  if (is(first, 0) && is(last, 90)) return LightSymmetry::quadrant;
-  if (is(first, 0) && is(last, 180)) return LightSymmetry::c0_c180;
-  if ((is(first, 90) && is(last, 270)) || (is(first, -90) && is(last, 90)))
-    return LightSymmetry::c90_c270;
-  if (is(last - first, 360)) return LightSymmetry::none;
+  if (is(span, 90) && multiple(first, 90)) return LightSymmetry::quadrant;
+  if (is(span, 180) && multiple(first, 180)) return LightSymmetry::c0_c180;
+  if (is(span, 180) && multiple(first, 90)) return LightSymmetry::c90_c270;
+  if (is(span, 360)) return LightSymmetry::none;
   deviations.push_back(
-      {0, "horizontal angles", format_number(first) + " to " + format_number(last),
+      {0, "horizontal angles", format_number(first) + " to " + format_number(horizontal.back()),
        "0 to 90, 0 to 180, 90 to 270 or 0 to 360; closed to a full turn by interpolation"});
   return LightSymmetry::none;
+}
+
+/// A symmetry of a file's labels in a frame where its 0-degree plane is the C plane `zero` [rad].
+LightSymmetry turned(LightSymmetry symmetry, double zero) {
+  if (symmetry == LightSymmetry::rotational) return symmetry;
+  const double quarters = zero / (pi<double> / 2);
+  if (std::abs(quarters - std::round(quarters)) > 1e-9) return LightSymmetry::none;
+  if (std::lround(quarters) % 2 == 0) return symmetry;
+  if (symmetry == LightSymmetry::c0_c180) return LightSymmetry::c90_c270;
+  return symmetry == LightSymmetry::c90_c270 ? LightSymmetry::c0_c180 : symmetry;
+}
+
+/// The luminous opening: sizes across, along and up [m], and whether it is an ellipse seen from
+/// below. Negative sizes code round shapes: a circle is -D 0 0 in 1995, -D -D 0 in 2002; with a
+/// negative height one positive size is the axis of a horizontal cylinder.
+void set_opening(Luminaire& light, const IesFile& file, bool upright) {
+  const double metre = file.units == 1 ? 0.3048 : 1.0;
+  double across = std::abs(file.width) * metre, along = std::abs(file.length) * metre;
+  const double up = std::abs(file.height) * metre;
+  const int edition = file.edition();
+  const bool cylinder = file.height < 0 && (file.width > 0 || file.length > 0);
+  const bool standing =  // a disk that faces the horizon
+      file.width < 0 && file.length == 0 && file.height < 0 && (edition == 0 || edition >= 2002);
+  light.round = (file.width < 0 || file.length < 0) && !cylinder && !standing;
+  if (light.round || cylinder) {
+    const double diameter = light.round ? std::max(across, along) : up;
+    if (file.width == 0) across = diameter;
+    if (file.length == 0) along = diameter;
+  }
+  light.size = {upright ? across : along, upright ? along : across, up};
+}
+
+/// What in a file of type C looks like the labels of EULUMDAT, whose C0 is across the lamp.
+std::string other_zero(const IesFile& file, const LightDiagram& as_labelled) {
+  if (find_symmetry(as_labelled) == LightSymmetry::c90_c270)
+    return "the light is mirrored at the 90-270 plane, not at the 0-180 plane";
+  if (file.length > 0 && file.width > 1.5 * file.length)
+    return "the opening is longer across the 0-degree plane than along it";
+  return {};
 }
 
 /// Types A and B: repeats the half that a file with angles from 0 leaves out.
@@ -77,6 +126,37 @@ LightFrame ies_frame(double zero, bool clockwise) {
   return frame;
 }
 
+/// How much the start of a text looks like an EULUMDAT file.
+enum class EulumdatLikeness {
+  none,
+  numbers,  ///< lines 2 to 4 and 6 are numbers: perhaps damaged
+  in_range  ///< and integers that Ityp, Isym, Mc and Ng can have
+};
+
+EulumdatLikeness eulumdat_likeness(std::string_view text) {
+  struct Limit {
+    int line, lowest, highest;
+  };
+  constexpr Limit limits[] = {
+      {2, 0, 3}, {3, 0, 4}, {4, 1, most_eulumdat_angles}, {6, 2, most_eulumdat_angles}};
+  bool in_range = true;
+  std::size_t next = 0;
+  for (int number = 1; number <= 7; ++number) {
+    const std::size_t end = text.find_first_of("\r\n", next);
+    if (end == std::string_view::npos) return EulumdatLikeness::none;
+    for (const Limit& limit : limits) {
+      if (limit.line != number) continue;
+      double value;
+      if (!parse_number(text.substr(next, end - next), Comma::decimal, value))
+        return EulumdatLikeness::none;
+      in_range =
+          in_range && value == std::floor(value) && value >= limit.lowest && value <= limit.highest;
+    }
+    next = end + (text.substr(end, 2) == "\r\n" ? 2 : 1);
+  }
+  return in_range ? EulumdatLikeness::in_range : EulumdatLikeness::numbers;
+}
+
 }  // namespace
 
 Luminaire to_luminaire(const IesFile& file, const std::string& name, const LightOptions& options,
@@ -95,14 +175,14 @@ Luminaire to_luminaire(const IesFile& file, const std::string& name, const Light
   light.absolute = file.lumens_per_lamp < 0;
   if (file.lumens_per_lamp > 0 && file.lamps > 0)
     light.lamp_lumens = file.lumens_per_lamp * file.lamps;
-  for (const char* key : {"_TOTALLUMINAIRELUMENS", "TOTALLUMINAIRELUMENS"})
-    if (double lumens; parse_number(file.keyword(key), lumens) && lumens > 0)
+  for (const char* key : {"_TOTALLUMINAIRELUMENS", "TOTALLUMINAIRELUMENS"}) {
+    const std::string text = file.keyword(key);
+    if (double lumens; (parse_number(text, Comma::thousands, lumens) ||
+                        parse_number(text, Comma::decimal, lumens)) &&
+                       lumens > 0)
       light.stated_lumens = lumens;
-  const double metre = file.units == 1 ? 0.3048 : 1.0;
-  light.round = file.width < 0;  // LM-63 codes round openings by negative sizes
-  const bool upright = std::abs(std::sin(options.ies_zero)) > 0.5;
-  const double along = std::abs(file.length) * metre, across = std::abs(file.width) * metre;
-  light.size = {upright ? across : along, upright ? along : across, std::abs(file.height) * metre};
+  }
+  set_opening(light, file, std::abs(std::sin(options.ies_zero)) > 0.5);
 
   double factor = file.factor();
   if (file.tilt == IesFile::Tilt::file && file.tilt_angles.empty())
@@ -115,13 +195,14 @@ Luminaire to_luminaire(const IesFile& file, const std::string& name, const Light
 
   FoldedLight folded;
   folded.cd = file.candela;
+  folded.unit = light.unit;
   for (double& v : folded.cd) v *= factor;
   folded.gamma = file.vertical;
   folded.c = file.horizontal;
   LightFrame frame = ies_frame(options.ies_zero, options.clockwise);
   if (file.type == IesFile::Type::c) {
     folded.symmetry = ies_symmetry(folded.c, deviations);
-    light.symmetry = folded.symmetry;
+    light.symmetry = turned(folded.symmetry, options.ies_zero);
   } else {
     // Horizontal 0 to 90 means the same on both sides; vertical 0 to 90 likewise.
     if (folded.c.size() > 1 && folded.c.front() == 0) mirror_to_negative(folded.c, folded.cd, true);
@@ -141,6 +222,7 @@ Luminaire to_luminaire(const IesFile& file, const std::string& name, const Light
             ": type B: found a single angle, expected at least 2 vertical and horizontal ones");
       FoldedLight turned;
       turned.sector = true;
+      turned.unit = light.unit;
       turned.c = file.vertical;  // rows become planes V, columns angles H
       if (turned.c.front() == 0) {
         turned.c.clear();
@@ -156,6 +238,8 @@ Luminaire to_luminaire(const IesFile& file, const std::string& name, const Light
   }
   light.diagram = unfold(folded, frame, name, deviations);
   if (file.type != IesFile::Type::b) light.diagram = in_frame(light.diagram, LightFrame{});
+  if (file.type == IesFile::Type::c && options.ies_zero != 0)
+    light.other_zero = other_zero(file, in_frame(light.diagram, frame));
   return light;
 }
 
@@ -210,26 +294,22 @@ Luminaire to_luminaire(const EulumdatFile& file, const std::string& name,
   return light;
 }
 
-LightFormat light_format(std::string_view text) noexcept {
-  if (text.substr(0, 5) == "TILT=" || text.find("\nTILT=") != std::string_view::npos ||
-      text.find("\rTILT=") != std::string_view::npos || text.substr(0, 3) == "IES")
-    return LightFormat::ies;
-  // Lines 2 to 7 of an EULUMDAT file are numbers; the first of them are small integers.
-  std::size_t next = 0;
-  for (int line = 1; line <= 7; ++line) {
-    const std::size_t end = text.find_first_of("\r\n", next);
-    if (end == std::string_view::npos) return LightFormat::unknown;
-    double value;
-    const bool number = parse_number(text.substr(next, end - next), value);
-    if (line >= 2 && line != 5 && line != 7 && !number) return LightFormat::unknown;
-    next = end + (text.substr(end, 2) == "\r\n" ? 2 : 1);
+LightFormat light_format(std::string_view text) {
+  if (text.substr(0, 3) == "\xEF\xBB\xBF") text.remove_prefix(3);
+  const EulumdatLikeness likeness = eulumdat_likeness(text);
+  if (likeness == EulumdatLikeness::in_range) return LightFormat::eulumdat;
+  bool first = true;
+  for (std::string_view rest = text; !rest.empty(); first = false) {
+    const std::string_view line = rest.substr(0, rest.find_first_of("\r\n"));
+    if (tilt_value(line) || (first && names_ies_standard(line))) return LightFormat::ies;
+    rest.remove_prefix(std::min(line.size() + 1, rest.size()));
   }
-  return LightFormat::eulumdat;
+  return likeness == EulumdatLikeness::numbers ? LightFormat::eulumdat : LightFormat::unknown;
 }
 
 Luminaire load_light(const std::filesystem::path& path, const LightOptions& options,
                      Deviations& deviations) {
-  const std::string text = read_text(path), name = path.string();
+  const std::string text = read_text(path, deviations), name = path.string();
   switch (light_format(text)) {
     case LightFormat::ies: {
       IesFile file = read_ies(text, name, deviations);
@@ -237,7 +317,7 @@ Luminaire load_light(const std::filesystem::path& path, const LightOptions& opti
         const std::filesystem::path beside =
             path.parent_path() / std::filesystem::path(file.tilt_file).filename();
         if (std::filesystem::is_regular_file(beside))
-          read_ies_tilt(read_text(beside), beside.string(), file);
+          read_ies_tilt(read_text(beside, deviations), beside.string(), file);
       }
       return to_luminaire(file, name, options, deviations);
     }
@@ -278,7 +358,7 @@ IesFile to_ies(const Luminaire& light, const LightOptions& options) {
   if (!light.absolute && light.lamp_lumens) file.lumens_per_lamp = *light.lamp_lumens;
   const bool upright = std::abs(std::sin(options.ies_zero)) > 0.5;
   file.width = (light.round ? -1 : 1) * (upright ? light.size.x : light.size.y);
-  file.length = (light.round ? -1 : 1) * (upright ? light.size.y : light.size.x);
+  file.length = (light.round ? -1 : 1) * (upright ? light.size.y : light.size.x);  // 2002: -D -D 0
   file.height = light.size.z;
   file.watts = light.watts;
   file.vertical = folded.gamma;
@@ -287,9 +367,23 @@ IesFile to_ies(const Luminaire& light, const LightOptions& options) {
   return file;
 }
 
+namespace {
+
+/// True if programs that find the planes of Isym 3 by index, as mc1 = 3 Mc/4 + 1 says, find C270.
+bool holds_from_c270(const LightDiagram& d) {
+  Deviations none;
+  const std::vector<double> c =
+      unfold(fold(d, LightSymmetry::c90_c270), d.frame, "EULUMDAT", none).c;
+  const std::size_t mc = c.size() - 1;
+  return mc % 2 == 0 && std::abs(c[3 * mc / 4] - 1.5 * pi<double>) < 1e-9;
+}
+
+}  // namespace
+
 EulumdatFile to_eulumdat(const Luminaire& light) {
   const LightDiagram full = in_frame(light.diagram, LightFrame{});
-  const LightSymmetry symmetry = find_symmetry(full);
+  LightSymmetry symmetry = find_symmetry(full);
+  if (symmetry == LightSymmetry::c90_c270 && !holds_from_c270(full)) symmetry = LightSymmetry::none;
   const FoldedLight folded = fold(full, symmetry);
   Deviations none;
   const LightDiagram diagram =
@@ -304,8 +398,10 @@ EulumdatFile to_eulumdat(const Luminaire& light) {
                                             LightSymmetry::quadrant};
   file.symmetry =
       static_cast<int>(std::find(std::begin(order), std::end(order), symmetry) - std::begin(order));
+  // A width of 0 is a circle; the format has no ellipses.
+  const bool circle = light.round && std::abs(light.size.x - light.size.y) <= 1e-6 * light.size.x;
   file.length = file.luminous_length = light.size.y * 1000;
-  file.width = file.luminous_width = light.round ? 0 : light.size.x * 1000;
+  file.width = file.luminous_width = circle ? 0 : light.size.x * 1000;
   file.height = light.size.z * 1000;
   file.luminous_height.fill(light.size.z * 1000);
 

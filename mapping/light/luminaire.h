@@ -17,8 +17,9 @@ namespace gonio {
 /// CIE and EULUMDAT, across the lamp axis. The 0-degree plane of IES files lies along the lamp
 /// axis: it is C90 here (see docs/lights.md, with a picture).
 struct Luminaire {
-  LightDiagram diagram;                          ///< [cd]
-  LightSymmetry symmetry = LightSymmetry::none;  ///< as the file states it
+  LightDiagram diagram;  ///< [cd]
+  /// As the file states it, in this frame: the planes are not the file's labels.
+  LightSymmetry symmetry = LightSymmetry::none;
   std::string format;  ///< "IES" or "EULUMDAT" or "EXR", with version and photometric type
   std::string manufacturer, name, number, lamp;
   std::string unit = "cd";  ///< of the intensities; some files hold radiometric values, say mW/sr
@@ -29,7 +30,10 @@ struct Luminaire {
   std::optional<double> downward_fraction;  ///< as the file states it, 0 to 1
   double watts = 0;                         ///< 0: unknown
   Vec3<double> size{0, 0, 0};               ///< luminous opening along x, y, z [m]; 0: point
-  bool round = false;                       ///< the opening is round (x is the diameter)
+  bool round = false;  ///< the opening is an ellipse of x by y, a circle where they are equal
+  /// What in an IES file looks as if its 0-degree plane were C0 (LightOptions::ies_zero = 0), as
+  /// words for people; empty if nothing does.
+  std::string other_zero;
 };
 
 /// What a file does not say, or says wrongly.
@@ -54,11 +58,13 @@ Luminaire to_luminaire(const EulumdatFile& file, const std::string& name,
 
 enum class LightFormat { unknown, ies, eulumdat };
 
-/// Told by content: IES files have a line that begins with TILT=, EULUMDAT files have the numbers
-/// of lines 2 to 7.
-LightFormat light_format(std::string_view text) noexcept;
+/// Told by content: EULUMDAT files have the numbers of lines 2 to 7, IES files a line that begins
+/// with TILT= or a first line that names their standard. UTF-16 must be converted before
+/// (without_utf16()).
+LightFormat light_format(std::string_view text);
 
-/// Reads an IES or EULUMDAT file, told by content. A TILT file is looked for beside it.
+/// Reads an IES or EULUMDAT file, told by content, in ASCII, UTF-8 or UTF-16. A TILT file is looked
+/// for beside it.
 /// @throws Error naming the file if it cannot be read, is neither, or is broken.
 Luminaire load_light(const std::filesystem::path& path, const LightOptions& options,
                      Deviations& deviations);
@@ -66,11 +72,13 @@ Luminaire load_light(const std::filesystem::path& path, const LightOptions& opti
 
 /// The luminaire as an LM-63-2002 file of type C, with the strongest symmetry that holds. Absolute
 /// photometry (lumens -1) unless the flux of the lamps is known. A diagram whose polar axis is not
-/// vertical (type B) is tabulated anew every degree.
+/// vertical (type B) is tabulated anew every half degree.
 IesFile to_ies(const Luminaire& luminaire, const LightOptions& options = {});
 
-/// The luminaire as an EULUMDAT file. Intensities are per 1000 lm of the lamps, or, where these are
-/// unknown, of the luminaire (absolute photometry, number of lamps -1). Direct ratios are left 0.
+/// The luminaire as an EULUMDAT file, with the strongest symmetry that holds and whose planes other
+/// programs find by index as well; without symmetry where they would not. Intensities are per 1000
+/// lm of the lamps, or, where these are unknown, of the luminaire (absolute photometry, number of
+/// lamps -1). Direct ratios are left 0.
 EulumdatFile to_eulumdat(const Luminaire& luminaire);
 
 }  // namespace gonio

@@ -67,12 +67,15 @@ Photometry::Spread spread(const LightDiagram& d, double c) {
 Photometry photometry(const LightDiagram& diagram) {
   const LightDiagram d = in_frame(diagram, LightFrame{});
   Photometry p;
-  p.flux = flux(d);
+  p.flux = flux(diagram);  // the same in every frame
   p.downward_flux = flux(d, 0, pi<double> / 2);
-  const std::size_t best =
-      static_cast<std::size_t>(std::max_element(d.cd.begin(), d.cd.end()) - d.cd.begin());
-  p.max_cd = d.cd[best];
-  p.max_at = {d.c[best / d.gamma.size()], d.gamma[best % d.gamma.size()]};
+  const std::size_t best = static_cast<std::size_t>(
+      std::max_element(diagram.cd.begin(), diagram.cd.end()) - diagram.cd.begin());
+  p.max_cd = diagram.cd[best];
+  const std::size_t n = diagram.gamma.size();
+  p.max_at = to_light_angles(LightFrame{},
+                             diagram.frame.direction(diagram.c[best / n], diagram.gamma[best % n]));
+  if (std::sin(p.max_at.gamma) < 1e-9) p.max_at.c = 0;
   p.c0 = spread(d, 0);
   p.c90 = spread(d, pi<double> / 2);
   for (int k = 0; k < 18; ++k)

@@ -22,8 +22,8 @@ struct Photometry {
   std::vector<double> zones;  ///< zonal lumens, 18 zones of 10 degrees of gamma from the nadir [lm]
 };
 
-/// Exact for the bilinear diagram, if its polar axis is vertical; others are tabulated every
-/// degree.
+/// Exact for the bilinear diagram, if its polar axis is vertical; of others flux and maximum are
+/// exact, and the rest is that of the diagram tabulated every half degree.
 Photometry photometry(const LightDiagram& diagram);
 
 /// Light output ratio: flux of the luminaire over that of its lamps; unset if that is unknown or

@@ -33,18 +33,15 @@ Layout layout(const Luminaire& light, const PolarPlot& plot) {
   if (!(total > 0)) throw Error("polar diagram: the luminaire is dark, expected some light");
   Layout l;
   l.factor = plot.per_klm ? 1000 / total : 1;
-  double largest = 0;
+  const double largest = max_intensity(d) * l.factor;
   l.upper = false;
   for (double plane : plot.planes)
     for (int k = -720; k <= 720; ++k) {
       const double g = pi<double> * k / 720;
       const double v =
           d.intensity(LightFrame{}.direction(k < 0 ? plane + pi<double> : plane, std::abs(g)));
-      largest = std::max(largest, v);
       if (std::abs(k) > 364 && v > 0.002 * max_intensity(d)) l.upper = true;
     }
-  largest *= l.factor;
-  if (!(largest > 0)) largest = max_intensity(d) * l.factor;  // these planes are dark
   // Four to six circles at 1, 2, 2.5 or 5 times a power of ten.
   const double power = std::pow(10, std::floor(std::log10(largest / 4)));
   l.ring = power;
@@ -108,8 +105,7 @@ std::string polar_svg(const Luminaire& light, const PolarPlot& plot) {
       << "\" fill=\"#fff\"/>\n<text x=\"300\" y=\"28\" text-anchor=\"middle\" font-size=\"16\">"
       << escaped(shortened(title, 70))
       << "</text>\n<text x=\"300\" y=\"48\" text-anchor=\"middle\" fill=\"#555\">" << escaped(unit)
-      << ", flux " << format_number(std::round(p.flux * 10) / 10) << " "
-      << escaped(flux_unit(light)) << "</text>\n";
+      << ", flux " << format_quantity(p.flux) << " " << escaped(flux_unit(light)) << "</text>\n";
 
   // Circles and rays.
   const auto ray_end = [&](double gamma, int side, double r) {

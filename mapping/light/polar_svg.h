@@ -17,7 +17,8 @@ struct PolarPlot {
 };
 
 /// The goniometric polar diagram as people in lighting draw it: nadir down, intensity as the
-/// distance from the centre, circles with round numbers, rays every 30 degrees; beam and field
+/// distance from the centre, circles with round numbers (the outermost holds I_max of the whole
+/// diagram, whatever the planes), rays every 30 degrees; beam and field
 /// angles of the planes below. The upper half is drawn only if there is light. Intensities are
 /// those of the diagram (bilinear).
 /// @throws Error for a dark luminaire, no plane, or more than 4.

@@ -104,8 +104,8 @@ void complete_parallels(std::vector<double>& gamma, std::vector<Meridian>& merid
 }
 
 /// One value where all meridians meet.
-void unite_pole(std::vector<Meridian>& meridians, bool front, bool sector, double largest,
-                Deviations& deviations) {
+void unite_pole(std::vector<Meridian>& meridians, bool front, const FoldedLight& folded,
+                double largest, Deviations& deviations) {
   const auto value = [&](Meridian& m) -> double& { return front ? m.cd.front() : m.cd.back(); };
   double lowest = value(meridians.front()), highest = lowest, sum = 0, weight = 0;
   for (std::size_t i = 0; i < meridians.size(); ++i) {
@@ -114,7 +114,7 @@ void unite_pole(std::vector<Meridian>& meridians, bool front, bool sector, doubl
     // The share of the turn that a meridian stands for.
     const double before = i > 0 ? meridians[i - 1].c : meridians.back().c - 360;
     const double after = i + 1 < meridians.size() ? meridians[i + 1].c : meridians.front().c + 360;
-    const double share = sector ? 1 : after - before;
+    const double share = folded.sector ? 1 : after - before;
     sum += v * share, weight += share;
   }
   if (lowest == highest) return;
@@ -122,7 +122,7 @@ void unite_pole(std::vector<Meridian>& meridians, bool front, bool sector, doubl
   if (highest - lowest > 1e-6 * largest)
     deviations.push_back(
         {0, front ? "intensity at the pole gamma = 0" : "intensity at the pole gamma = 180",
-         format_number(lowest) + " to " + format_number(highest) + " cd",
+         format_number(lowest) + " to " + format_number(highest) + " " + folded.unit,
          "one value; the mean " + format_number(mean) + " is taken"});
   for (Meridian& m : meridians) value(m) = mean;
 }
@@ -168,7 +168,7 @@ LightDiagram unfold(const FoldedLight& folded, const LightFrame& frame, const st
     if (difference > 1e-6 * largest)
       deviations.push_back(
           {0, "intensities at C = " + format_number(meridians[i].c),
-           "two meridians that differ by up to " + format_number(difference) + " cd",
+           "two meridians that differ by up to " + format_number(difference) + " " + folded.unit,
            "equal ones; the first is taken"});
     meridians.erase(meridians.begin() + static_cast<std::ptrdiff_t>(i));
   }
@@ -177,8 +177,8 @@ LightDiagram unfold(const FoldedLight& folded, const LightFrame& frame, const st
   complete_parallels(gamma, meridians, name, deviations);
 
   // The lit meridians of a sector meet in one value; its dark ones stay dark up to the pole.
-  if (gamma.front() == 0) unite_pole(meridians, true, folded.sector, largest, deviations);
-  if (gamma.back() == 180) unite_pole(meridians, false, folded.sector, largest, deviations);
+  if (gamma.front() == 0) unite_pole(meridians, true, folded, largest, deviations);
+  if (gamma.back() == 180) unite_pole(meridians, false, folded, largest, deviations);
   if (folded.sector && folded.c.size() > 1 &&
       folded.c.back() - folded.c.front() < 360 - same_angle) {
     const double edge = edge_width * 180 / pi<double>;

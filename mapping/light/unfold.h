@@ -23,7 +23,8 @@ const char* to_string(LightSymmetry symmetry) noexcept;
 struct FoldedLight {
   std::vector<double> c;      ///< [deg] ascending
   std::vector<double> gamma;  ///< [deg] from the nadir of the frame, ascending, in [0, 180]
-  std::vector<double> cd;     ///< c.size() x gamma.size(), [cd], finite
+  std::vector<double> cd;     ///< c.size() x gamma.size(), in `unit`, finite
+  std::string unit = "cd";    ///< for messages
   LightSymmetry symmetry = LightSymmetry::none;
   /// C outside [c.front(), c.back()] is dark instead of being closed to a turn: types A and B.
   bool sector = false;

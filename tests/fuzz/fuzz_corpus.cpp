@@ -70,5 +70,15 @@ int main(int argc, char** argv) {
   gonio::write_eulumdat(eulumdat, gonio::to_eulumdat(light));
   write(folder / "light" / "lambert.ies", ies.str());
   write(folder / "light" / "lambert.ldt", eulumdat.str());
+  write(folder / "light" / "commas.ies",
+        "IESNA91\nTilt = include\n1 2\n0 90\n1 0,5\n1 1,000 1 3 2 1 2 -0,5 0 0\n1 1 10\n0 45 90\n0 180\n"
+        "1,5 1,25 0\n1,5 1,2 0\n");
+  write(folder / "light" / "type_b.ies",
+        "TILT=NONE\n1 -1 1 3 2 2 2 0 0 0\n1 1 10\n-90 0 90\n0 90\n1 2 3\n2 3 4\n");
+  std::string stored = "a\n1\n3\n3\n90\n2\n90\n\n\n\n\n\n";
+  for (int k = 0; k < 13; ++k) stored += "1,5\n";
+  stored += "1\n1\nl\n1000,5\n\n\n10\n";
+  for (int k = 0; k < 10; ++k) stored += "0\n";
+  write(folder / "light" / "stored.ldt", stored + "-90\n0\n90\n0\n90\n3\n1\n3\n2\n3\n1\n");
   return 0;
 }

@@ -33,6 +33,9 @@ void light_solid(const LightCommand& o);
 void light_sample(const CLI::App& verb, const LightCommand& o);
 void light_compare(const LightCommand& o);
 
+/// Loads a file as it is. @throws Error as load_any_light(); a file of another kind is named as
+/// what it is, with the verb that takes it.
+Luminaire load_as_is(const std::string& file, const LightCommand& o, Deviations& deviations);
 /// Loads a file and normalises it as the command says.
 Luminaire load(const std::string& file, const LightCommand& o);
 

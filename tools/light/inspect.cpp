@@ -1,6 +1,6 @@
 #include <gonio/mapping/error.h>
-#include <gonio/mapping/light/exr/light_exr.h>
 #include <gonio/mapping/light/photometry.h>
+#include <gonio/mapping/light/text_scanner.h>
 #include <gonio/tools/light/command.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ std::string shown(const std::string& text) { return text.empty() ? "-" : text; }
 void light_info(const LightCommand& o) {
   for (const std::string& file : o.files) {
     Deviations deviations;
-    const Luminaire light = load_any_light(file, o.reading(), deviations);
+    const Luminaire light = load_as_is(file, o, deviations);
     const Photometry p = photometry(light.diagram);
     const auto line = [](const char* name, const std::string& value) {
       std::printf("  %-16s %s\n", name, value.c_str());
@@ -38,30 +38,35 @@ void light_info(const LightCommand& o) {
     line("angles", text("%zu C planes, %zu gamma, symmetry: ", light.diagram.c.size() - 1,
                         light.diagram.gamma.size()) +
                        to_string(light.symmetry));
-    line("flux", text("%.2f %s, %.1f %% of it down", p.flux, total.c_str(),
-                      p.flux > 0 ? 100 * p.downward_flux / p.flux : 0.0));
+    line("flux",
+         format_quantity(p.flux) + " " + total +
+             text(", %.1f %% of it down", p.flux > 0 ? 100 * p.downward_flux / p.flux : 0.0));
     if (light.stated_lumens)
-      line("stated flux", text("%.2f %s (%+.2f %%)", *light.stated_lumens, total.c_str(),
-                               100 * (p.flux / *light.stated_lumens - 1)));
+      line("stated flux", format_quantity(*light.stated_lumens) + " " + total +
+                              text(" (%+.2f %%)", 100 * (p.flux / *light.stated_lumens - 1)));
     if (light.lamp_lumens)
-      line("lamps",
-           text("%.2f lm%s", *light.lamp_lumens, light.absolute ? ", absolute photometry" : ""));
+      line("lamps", format_quantity(*light.lamp_lumens) + " " + total +
+                        (light.absolute ? ", absolute photometry" : ""));
     if (const auto ratio = light_output_ratio(light))
       line("output ratio", text("%.2f %%", 100 * *ratio));
     if (const auto e = efficacy(light))  // of radiometric files the efficiency
-      line("efficacy", text("%.2f %s/W at %.4g W", *e, total.c_str(), light.watts));
-    line("I max", text("%.2f %s at C %.4g, gamma %.4g degrees", p.max_cd, light.unit.c_str(),
-                       p.max_at.c / degree, p.max_at.gamma / degree));
+      line("efficacy", format_quantity(*e) + " " + total + text("/W at %.4g W", light.watts));
+    line("I max",
+         format_quantity(p.max_cd) + " " + light.unit +
+             text(" at C %.4g, gamma %.4g degrees", p.max_at.c / degree, p.max_at.gamma / degree));
     line("beam angle", text("%.1f degrees in C0-C180, %.1f in C90-C270", p.c0.beam / degree,
                             p.c90.beam / degree));
     line("field angle", text("%.1f degrees in C0-C180, %.1f in C90-C270", p.c0.field / degree,
                              p.c90.field / degree));
     std::string zones;
-    for (double z : p.zones) zones += text("%.4g ", z);
+    for (double z : p.zones)  // less is rounding
+      zones += text("%.4g ", z > 1e-9 * p.flux ? z : 0.0);
     line(total == "lm" ? "zonal lumens" : "zonal flux",
          zones + total + ", every 10 degrees from the nadir");
     if (!deviations.empty())
       line("deviations", text("%zu, see gonio light validate", deviations.size()));
+    if (!light.other_zero.empty())
+      line("hint", light.other_zero + ": if C0 is the file's 0-degree plane, use --ies-zero 0");
   }
 }
 
@@ -70,12 +75,12 @@ void light_validate(const LightCommand& o) {
   for (const std::string& file : o.files) {
     Deviations deviations;
     try {
-      const Luminaire light = load_any_light(file, o.reading(), deviations);
+      const Luminaire light = load_as_is(file, o, deviations);
       const double total = flux(light.diagram);
       if (light.stated_lumens && std::abs(total / *light.stated_lumens - 1) > 0.05)
         deviations.push_back({0, "flux",
-                              std::to_string(total) + " " + flux_unit(light) + " by quadrature",
-                              std::to_string(*light.stated_lumens) + " as the file states"});
+                              format_number(total) + " " + flux_unit(light) + " by quadrature",
+                              format_number(*light.stated_lumens) + " as the file states"});
       std::printf("%s: %s, %zu deviation%s\n", file.c_str(), light.format.c_str(),
                   deviations.size(), deviations.size() == 1 ? "" : "s");
       deviating += !deviations.empty();

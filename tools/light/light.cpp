@@ -11,8 +11,10 @@ namespace {
 void add_reading(CLI::App& verb, LightCommand& o) {
   verb.add_flag("--clockwise", o.clockwise,
                 "horizontal angles run clockwise (about a third of type B files)");
-  verb.add_option("--ies-zero", o.ies_zero,
-                  "C plane that the 0-degree plane of IES files is; 0 keeps their labels")
+  verb.add_option(
+          "--ies-zero", o.ies_zero,
+          "C plane that the 0-degree plane of IES files is; 0 keeps their labels, as files need "
+          "that put C0 across the lamp (gonio light info says when one looks like it)")
       ->type_name("DEG")
       ->capture_default_str();
   verb.add_option("--tilt", o.tilt, "tilt of the lamp, for IES files with TILT factors")

@@ -1,6 +1,7 @@
 #include <gonio/mapping/error.h>
 #include <gonio/mapping/light/emission.h>
 #include <gonio/mapping/light/photometry.h>
+#include <gonio/mapping/light/text_scanner.h>
 #include <gonio/tools/light/command.h>
 
 #include <cstdio>
@@ -19,11 +20,12 @@ void print_difference(const char* name, const LightDifference& d) {
 void light_sample(const CLI::App& verb, const LightCommand& o) {
   const Luminaire light = load(o.in, o);
   if (verb.count("--quality") > 0) {
-    std::printf("%-52s %12s %10s %8s\n", "method", "flux, lm", "relvar", "ns");
+    std::printf("%-52s %12s %10s %8s\n", "method", ("flux, " + flux_unit(light)).c_str(), "relvar",
+                "ns");
     for (const EmissionQuality& q : emission_quality(light.diagram))
-      std::printf("%-52s %12.3f %10.2e %8.0f\n", q.method.c_str(), q.flux, q.relvar,
-                  q.nanoseconds_per_draw);
-    std::printf("%-52s %12.3f\n", "quadrature", flux(light.diagram));
+      std::printf("%-52s %12s %10.2e %8.0f\n", q.method.c_str(), format_number(q.flux).c_str(),
+                  q.relvar, q.nanoseconds_per_draw);
+    std::printf("%-52s %12s\n", "quadrature", format_number(flux(light.diagram)).c_str());
     return;
   }
   const EmissionSampler<float> sampler(light.diagram);

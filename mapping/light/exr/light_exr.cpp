@@ -14,6 +14,7 @@
 #include <gonio/mapping/error.h>
 #include <gonio/mapping/light/exr/light_exr.h>
 #include <gonio/mapping/light/octahedral.h>
+#include <gonio/mapping/light/text_scanner.h>
 
 #include <cmath>
 #include <fstream>
@@ -135,7 +136,8 @@ Luminaire read(const std::string& name) {
   light.number = text(header, "number");
   light.lamp = text(header, "lamp");
   light.unit = text(header, "unit");
-  light.symmetry = find_symmetry(d);
+  if (d.frame.nadir == LightFrame{}.nadir)  // none is told of type B, as of its IES file
+    light.symmetry = find_symmetry(in_frame(d, LightFrame{}));
   light.lamp_lumens = optional_number(header, "lampLumens");
   light.stated_lumens = optional_number(header, "statedLumens");
   light.downward_fraction = optional_number(header, "downwardFraction");
@@ -207,7 +209,7 @@ bool is_light_file(const std::filesystem::path& path) {
   std::string start(1 << 16, '\0');
   stream.read(start.data(), static_cast<std::streamsize>(start.size()));
   start.resize(static_cast<std::size_t>(stream.gcount()));
-  return light_format(start) != LightFormat::unknown;
+  return light_format(without_utf16(std::move(start))) != LightFormat::unknown;
 }
 
 Luminaire load_any_light(const std::filesystem::path& path, const LightOptions& options,
