@@ -93,11 +93,11 @@ struct RadialPlace {
   T r() const noexcept { return cell.radius(s); }
   T gap() const noexcept { return cell.gap(s); }
   T density() const noexcept { return cell.density(s); }
-  /// The place or, if its cell is counted from its end, one at least `at_horizon` from an end at the horizon and
-  /// `inside` from an end elsewhere: where the density falls to 0 there, radii must hold the distance.
+  /// The place, moved to at least `at_horizon` from the horizon and, in a cell that is counted from an end elsewhere,
+  /// `inside` from there: where the density falls to 0, radii must hold the distance.
   RadialPlace off_end(T at_horizon) const noexcept {
-    const T least = cell.r0 < 1 ? inside : at_horizon;
-    return {cell, -s * cell.h < least && cell.h < 0 ? std::min(-least / cell.h, T(1)) : s};
+    if (gap() < at_horizon) return {cell, std::clamp(((1 - cell.r0) - at_horizon) / cell.h, T(0), T(1))};
+    return {cell, cell.h < 0 && cell.r0 < 1 && -s * cell.h < inside ? std::min(-inside / cell.h, T(1)) : s};
   }
   static constexpr T inside = 256 * std::numeric_limits<T>::epsilon();
 };

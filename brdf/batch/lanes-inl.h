@@ -234,10 +234,12 @@ struct CellDraw {
   HWY_INLINE V density() const { return cell.density(s); }
   /// RadialPlace::off_end().
   HWY_INLINE void keep_off_end(float at_horizon) {
-    const V least = hn::IfThenElse(hn::Lt(cell.r0, set(1)), set(256 * 1.1920929e-7f), set(at_horizon));
-    const M beyond = hn::And(hn::Lt(hn::Neg(hn::Mul(s, cell.h)), least), hn::Lt(cell.h, zero()));
-    if (HWY_LIKELY(hn::AllFalse(D(), beyond))) return;
-    s = hn::IfThenElse(beyond, clamp01(hn::Neg(hn::Div(least, cell.h))), s);
+    constexpr float inside = 256 * 1.1920929e-7f;
+    const M beyond = hn::Lt(gap(), set(at_horizon));
+    const M at_end = hn::And(hn::And(hn::Lt(cell.h, zero()), hn::Lt(cell.r0, set(1))), hn::Lt(hn::Neg(hn::Mul(s, cell.h)), set(inside)));
+    if (HWY_LIKELY(hn::AllFalse(D(), hn::Or(beyond, at_end)))) return;
+    const V way = hn::IfThenElse(beyond, hn::Sub(hn::Sub(set(1), cell.r0), set(at_horizon)), set(-inside));
+    s = hn::IfThenElse(hn::Or(beyond, at_end), clamp01(hn::Div(way, cell.h)), s);
   }
 };
 
