@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <gonio/mapping/error.h>
+#include <gonio/tools/number.h>
 #include <gonio/tools/render/triangulate.h>
 #include <gonio/tools/render/words.h>
 
@@ -162,7 +163,7 @@ class PlyReader {
   /// A number that has to be a whole one, from 0 to below `limit`.
   std::size_t whole(double value, std::size_t limit, const Element& element, std::size_t k, const std::string& what) const {
     if (!(value >= 0 && value < static_cast<double>(limit) && value == std::floor(value)))
-      fail(element.name + " " + std::to_string(k), what + " " + std::to_string(value), "a whole number from 0 to below " + std::to_string(limit));
+      fail(element.name + " " + std::to_string(k), what + " " + gonio::number(value, 10), "a whole number from 0 to below " + std::to_string(limit));
     return static_cast<std::size_t>(value);
   }
 
