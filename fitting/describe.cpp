@@ -5,7 +5,9 @@
 #include <cctype>
 #include <charconv>
 #include <optional>
+#include <set>
 #include <sstream>
+#include <utility>
 
 namespace gonio {
 namespace {
@@ -142,6 +144,7 @@ LobeModel parse_model(std::string_view text) {
       settings.push_back({model.lobes.size() - 1, setting});
     }
   }
+  std::set<std::pair<const Lobe*, std::string>> given;
   for (const Setting& setting : settings) {
     const size_t equals = setting.text.find('=');
     if (equals == setting.text.npos) {
@@ -166,6 +169,10 @@ LobeModel parse_model(std::string_view text) {
       throw Error("model description: " + std::to_string(owners) + " lobes of " + in_quotes(text) +
                   " have a parameter " + in_quotes(name) +
                   "; write it right after the lobe it belongs to");
+    }
+    if (!given.insert({target, name}).second) {
+      throw Error("model description: found " + in_quotes(name) + " of " +
+                  lobe_info(target->kind).id + " twice; expected it once");
     }
     assign(*target, name, setting.text.substr(equals + 1));
   }

@@ -1,7 +1,8 @@
+#include <gonio/brdf/bytes.h>
 #include <gonio/fitting/model_json.h>
+#include <gonio/fitting/parse_json.h>
 #include <gonio/mapping/error.h>
 
-#include <fstream>
 #include <sstream>
 
 namespace gonio {
@@ -102,7 +103,7 @@ class Reader {
                value[1].is_number() && value[2].is_number()) {
       result = {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
     } else {
-      fail(here + ".value is " + value.dump() + "; expected a number or [red, green, blue]");
+      fail(here + ".value is " + shown(value) + "; expected a number or [red, green, blue]");
     }
     for (int c = 0; c < 3; ++c) {
       if (!(result[c] >= parameter.min && result[c] <= parameter.max)) {
@@ -123,10 +124,9 @@ class Reader {
 
 LobeModel model_from_json(std::string_view text, const std::string& where) {
   const Reader reader(where);
-  const json root = json::parse(text, nullptr, false);
-  if (root.is_discarded()) reader.fail("is not JSON");
+  const json root = parse_json(text, where);
   if (reader.text(root, "the file", "format") != "gonio model") {
-    reader.fail("format is " + root["format"].dump() + "; expected \"gonio model\"");
+    reader.fail("format is " + shown(root["format"]) + "; expected \"gonio model\"");
   }
   LobeModel model;
   model.name = reader.text(root, "the file", "name");
@@ -165,11 +165,7 @@ LobeModel model_from_json(std::string_view text, const std::string& where) {
 }
 
 LobeModel load_model(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  if (!file) throw Error(path.string() + ": cannot be read");
-  return model_from_json(text.str(), path.string());
+  return model_from_json(read_bytes(path), path.string());
 }
 
 }  // namespace gonio

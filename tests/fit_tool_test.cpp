@@ -213,6 +213,27 @@ TEST_F(FitToolTest, ModelFilesAreInputs) {
   expect_error("synth missing.json -o d.binary", "missing.json");
 }
 
+// What nests deeper than the stack is high, or says two things at once, wherever JSON is read.
+TEST_F(FitToolTest, EveryVerbRefusesHostileJson) {
+  std::ofstream(path("twice.json")) << R"({"format": "gonio model", "name": "a", "name": "b"})";
+  std::ofstream deep(path("deep.json"));
+  for (int k = 0; k < 100000; ++k) deep << "{\"a\":";
+  deep.close();
+  for (const auto& [file, part] : {std::pair("deep.json", "deep.json: found objects or arrays more than 64 deep"), std::pair("twice.json", "twice.json: name: found twice, expected once")}) {
+    const std::string in = file;
+    for (const std::string& verb : {"info " + in, "fit " + in + " -o out.json", "report " + in + " -o out", "synth " + in + " -o out.binary",
+                                    "convert " + in + " out.exr", "convert --scene " + in + " --budget 1MiB -o out", "render " + in + " -o out.exr",
+                                    "render --material " + in + " -o out.exr", "compare " + in + " -o out", "report --merge " + in + " -o out"})
+      expect_error(verb, part);
+    const Outcome run = execute("validate " + in);
+    EXPECT_EQ(run.code, 1);
+    const std::string message = part;
+    EXPECT_TRUE(contains(run.out, message.substr(message.find(": ") + 2))) << run.out;
+    std::ofstream(path("fit.json")) << to_json(parse_model(one_lobe));
+    expect_error("report fit.json --stability " + in + " -o out", part);
+  }
+}
+
 TEST_F(FitToolTest, ReportComparesLobesAndStacks) {
   // A name that is no UTF-8 loses a letter, and no report.
   std::ofstream(path("fit\xff.json")) << to_json(parse_model(one_lobe));

@@ -136,6 +136,19 @@ TEST(ModelJson, SaysWhatIsWrong) {
          "expected a number");
 }
 
+TEST(ModelDescription, EachParameterOnce) {
+  EXPECT_NO_THROW(parse_model("ggx:alpha=0.1,F0=0.2+ggx:alpha=0.3,F0=0.4"));
+  for (const char* text : {"ggx:alpha=0.1,alpha=0.2", "ggx:F0=0.1,f0=0.1", "lambert:albedo=0.2,albedo=0.4", "lambert:albedo=0.1,alpha=0.1+ggx:alpha=0.1",
+                           "ggx:eta=0.2,k=3,k=3"}) {
+    try {
+      parse_model(text);
+      ADD_FAILURE() << text;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(" twice; expected it once"), std::string::npos) << error.what();
+    }
+  }
+}
+
 TEST(LoadModel, FileOrError) {
   EXPECT_THROW(load_model("/nonexistent/fit.json"), Error);
   const std::filesystem::path path =

@@ -61,16 +61,23 @@ TEST(ReadScene, ReadsEveryField) {
 TEST(ReadScene, ErrorsNameFileAndField) {
   EXPECT_EQ(error_of(good()), "none");
   const std::pair<json, const char*> cases[] = {
-      {with("/colour", 1), "s.json: colour: found an unknown field"},
-      {with("/camera/fov", 30), "s.json: camera.fov: found an unknown field"},
+      {with("/colour", 1), "s.json: colour: found an unknown field, expected one of camera, environment, materials, objects, lights"},
+      {with("/camera/fov", 30), "s.json: camera.fov: found an unknown field, expected one of position, target, up, vertical_fov, resolution"},
       {with("/camera/position", json::array({1, 2})), "s.json: camera.position: found [1,2], expected three numbers"},
       {with("/camera/vertical_fov", 180), "s.json: camera.vertical_fov: found 180, expected a number from 0.01 to 179"},
       {with("/camera/resolution", json::array({0, 5})), "s.json: camera.resolution: found [0,5]"},
       {with("/camera/target", json::array({0, -5, 2})), "s.json: camera.target: found a view along up, or of no length"},
       {with("/camera", 3), "s.json: camera: found 3, expected an object"},
       {with("/environment/constant", -1), "s.json: environment.constant: found -1, expected a number from 0"},
-      {with("/environment", json::object()), "s.json: environment.file: found none, expected file, sky or constant"},
-      {with("/environment/suns", 2), "s.json: environment.suns: found an unknown field"},
+      {with("/environment", json::object()), "s.json: environment.file: found none, expected one of file, sky and constant"},
+      {with("/environment/suns", 2), "s.json: environment.suns: found an unknown field, expected one of file, sky, constant, scale, turn"},
+      {with("/environment/file", "a.exr"), "s.json: environment.file: found another as well, expected one of file, sky and constant"},
+      {with("/environment/sky", {{"sun", {0, 0, 1}}}), "s.json: environment.file: found another as well"},
+      {with("/environment", {{"sky", {{"moon", 1}}}}), "s.json: environment.sky.moon: found an unknown field, expected one of sun, radius, radiance"},
+      {with("/materials/white/colour", 1), "s.json: materials.white.colour: found an unknown field, expected one of file, albedo, sampling, two_sided"},
+      {with("/materials/white/sampling", "cosine"), "s.json: materials.white.sampling: found one, expected none"},
+      {with("/objects/0/size", 1), "s.json: objects[0].size: found an unknown field, expected one of shape, file, material, scale, rotate, translate, emission"},
+      {with("/lights", json::array({json{{"intensity", 1}}})), "s.json: lights[0].intensity: found an unknown field, expected one of file, position, rotate, scale"},
       {with("/materials/white/albedo", 1.5), "s.json: materials.white.albedo: found 1.5, expected a number from 0 to 1"},
       {with("/materials/white/file", "a.bsdf"), "s.json: materials.white.file: found albedo as well"},
       {with("/materials/white", json::object()), "s.json: materials.white.file: found none"},
@@ -101,13 +108,19 @@ TEST(ReadScene, ErrorsNameFileAndField) {
 
 TEST(ReadScene, RefusesWhatIsNoJson) {
   const test::TemporaryFolder folder;
-  test::write_file(folder / "s.json", "{\"camera\": ");
-  try {
-    read_scene(folder / "s.json");
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("s.json: found no valid JSON"));
-  }
+  const auto error = [&](const std::string& text) -> std::string {
+    test::write_file(folder / "s.json", text);
+    try {
+      read_scene(folder / "s.json");
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "none";
+  };
+  EXPECT_EQ(error(good().dump()), "none");
+  EXPECT_THAT(error("{\"camera\": "), HasSubstr("s.json: is not JSON: parse error at line 1, column 12"));
+  EXPECT_THAT(error(R"({"materials": {"a": {"albedo": 0.1}, "a": {"albedo": 0.9}}, "objects": []})"), HasSubstr("s.json: materials.a: found twice, expected once"));
+  EXPECT_THAT(error("{\"materials\": " + std::string(100000, '[')), HasSubstr("s.json: found objects or arrays more than 64 deep"));
 }
 
 TEST(ReadScene, MethodsHaveToSuitTheTable) {

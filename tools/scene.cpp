@@ -1,10 +1,10 @@
 #include <gonio/brdf/bytes.h>
+#include <gonio/fitting/parse_json.h>
 #include <gonio/mapping/error.h>
 #include <gonio/tools/scene.h>
 
 #include <cmath>
 #include <initializer_list>
-#include <nlohmann/json.hpp>
 #include <set>
 
 namespace gonio {
@@ -19,15 +19,6 @@ class Reader {
 
   [[noreturn]] void fail(const std::string& field, const std::string& found, const std::string& expected) const {
     throw Error(file_ + ": " + field + ": found " + found + ", expected " + expected);
-  }
-
-  json parse() const {
-    try {
-      return json::parse(read_bytes(file_));
-    } catch (const json::exception& error) {  // out_of_range for a number like 1e999
-      const std::string what = error.what();  // "[json.exception.parse_error.101] parse error at line 1 ..."
-      throw Error(file_ + ": is not JSON: " + what.substr(what.find("] ") + 2));
-    }
   }
 
   /// An object with no other members than these.
@@ -53,13 +44,13 @@ class Reader {
   std::string text(const json& object, const std::string& field, const char* name) const {
     const json& value = member(object, field, name);
     if (!value.is_string() || value.get_ref<const std::string&>().empty())
-      fail(field + "." + name, value.dump(), "a text");
+      fail(field + "." + name, shown(value), "a text");
     return value;
   }
 
   double non_negative(const json& value, const std::string& field) const {
     if (!value.is_number() || !(value.get<double>() >= 0) || std::isinf(value.get<double>()))
-      fail(field, value.dump(), "a finite number >= 0");
+      fail(field, shown(value), "a finite number >= 0");
     return value;
   }
 
@@ -77,7 +68,7 @@ std::vector<double> read_incidence(const Reader& reader, const json& material, c
   const auto found = material.find("incidence");
   if (found == material.end()) return {};
   const std::string here = field + ".incidence";
-  if (!found->is_array() || found->empty()) reader.fail(here, found->dump(), "an array of at least one number");
+  if (!found->is_array() || found->empty()) reader.fail(here, shown(*found), "an array of at least one number");
   std::vector<double> shares;
   double sum = 0;
   for (const json& value : *found) {
@@ -93,12 +84,12 @@ std::vector<double> read_incidence(const Reader& reader, const json& material, c
 
 std::vector<SceneMaterial> load_scene(const std::filesystem::path& path) {
   const Reader reader(path.string());
-  const json root = reader.parse();
+  const json root = parse_json(read_bytes(path), path.string());
   reader.check_members(root, "the file", {"format", "version", "materials"});
   if (reader.text(root, "the file", "format") != "gonio scene")
-    reader.fail("format", root["format"].dump(), "\"gonio scene\"");
+    reader.fail("format", shown(root["format"]), "\"gonio scene\"");
   if (const json& version = reader.member(root, "the file", "version"); version != 1)
-    reader.fail("version", version.dump(), "1");
+    reader.fail("version", shown(version), "1");
   const json& list = reader.member(root, "the file", "materials");
   if (!list.is_array() || list.empty()) reader.fail("materials", list.type_name(), "an array of at least one material");
 

@@ -1,5 +1,6 @@
 #include <gonio/brdf/exr/disk_image_file.h>
 #include <gonio/brdf/exr/stack_file.h>
+#include <gonio/fitting/model.h>
 
 #include <filesystem>
 #include <fstream>
@@ -80,5 +81,31 @@ int main(int argc, char** argv) {
   stored += "1\n1\nl\n1000,5\n\n\n10\n";
   for (int k = 0; k < 10; ++k) stored += "0\n";
   write(folder / "light" / "stored.ldt", stored + "-90\n0\n90\n0\n90\n3\n1\n3\n2\n3\n1\n");
+
+  const auto fit = [](const char* model) { return gonio::to_json(gonio::parse_model(model)); };
+  write(folder / "fit" / "plastic", fit("default"));
+  write(folder / "fit" / "metal", fit("student_t:eta=0.2/0.3/0.4,k=3+oren_nayar"));
+  write(folder / "manifest" / "two", R"({"format": "gonio scene", "version": 1, "materials": [
+    {"name": "a", "file": "/proc/self/exe", "share": 2, "incidence": [0, 1, 5]}, {"name": "b", "file": "/proc/self/exe", "share": 1}]})");
+  write(folder / "scene" / "all", R"({"camera": {"position": [0, -6, 3], "target": [0, 0, 1], "up": [0, 0, 1], "vertical_fov": 25, "resolution": [64, 32]},
+    "environment": {"sky": {"sun": [0, 1, 1], "radius": 2.5, "radiance": 300}, "turn": 90, "scale": 1},
+    "materials": {"a": {"albedo": [0.5, 0.4, 0.3], "two_sided": true}, "b": {"albedo": 0.2}},
+    "objects": [{"shape": "preview", "material": "a", "scale": [1, 2, 3], "rotate": [90, 0, 0], "translate": [0, 0, 1]},
+                {"shape": "square", "material": "b", "emission": [1, 2, 3]}], "lights": []})");
+  write(folder / "scene" / "file", R"({"environment": {"constant": 1}, "materials": {"a": {"file": "a.bsdf", "sampling": "half"}},
+    "objects": [{"file": "a.ply", "material": "a"}], "lights": [{"file": "a.ies", "position": [0, 0, 1], "scale": 2}]})");
+
+  const std::string vertices = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
+  const std::string faces = "element face 1\nproperty list uchar uint vertex_indices\nend_header\n";
+  write(folder / "ply" / "ascii", "ply\nformat ascii 1.0\ncomment one\n" + vertices + faces + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n");
+  std::string binary = "ply\nformat binary_little_endian 1.0\n" + vertices + "property list uchar short marks\n" + faces;
+  for (const float x : {0.0f, 1.0f, 2.0f, 3.0f}) {
+    for (const float p : {x, x * x, 1.0f}) append(binary, p);
+    append(binary, std::uint8_t(0));
+  }
+  append(binary, std::uint8_t(4));
+  for (const std::uint32_t v : {0u, 1u, 3u, 2u}) append(binary, v);
+  write(folder / "ply" / "binary", binary);
+  write(folder / "obj" / "quad", "# one\nmtllib a.mtl\no a\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nusemtl b\nf 1/1/1 2/1/1 \\\n3//1 -1/-1/-1\n");
   return 0;
 }

@@ -1,9 +1,12 @@
 #!/usr/bin/env bash
-# Builds the fuzzers with clang in build-fuzz/ and runs each for the seconds given (60), from generated
-# files on. Fails at the first finding, which stays in build-fuzz/findings/. Exit status 77 without clang.
+# run.sh [SECONDS [NAME ...]]: builds the fuzzers with clang in build-fuzz/ and runs each, or those named,
+# for SECONDS (60), from generated files on. Fails at the first finding, which stays in
+# build-fuzz/findings/. Exit status 77 without clang.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 seconds=${1:-60}
+names=("${@:2}")
+((${#names[@]})) || names=(merl rgl mbsdf stack image light fit manifest scene ply obj)
 
 if ! command -v clang++ >/dev/null; then
   echo "fuzz: no clang++" >&2
@@ -14,7 +17,7 @@ cmake --build --preset fuzz
 
 mkdir -p build-fuzz/corpus build-fuzz/findings
 build-fuzz/tests/fuzz/fuzz_corpus build-fuzz/corpus
-for name in merl rgl mbsdf stack image light; do
+for name in "${names[@]}"; do
   echo "fuzz: $name"
   build-fuzz/tests/fuzz/fuzz_$name -max_total_time="$seconds" -timeout=20 -rss_limit_mb=3000 -max_len=65536 \
     -print_final_stats=1 -verbosity=0 -artifact_prefix=build-fuzz/findings/$name- build-fuzz/corpus/$name

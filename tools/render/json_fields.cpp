@@ -1,16 +1,13 @@
 #include <gonio/tools/render/json_fields.h>
 
+#include <algorithm>
 #include <sstream>
 
+#include <gonio/fitting/parse_json.h>
 #include <gonio/mapping/error.h>
 
 namespace gonio {
 namespace {
-
-std::string shown(const nlohmann::json& value) {
-  std::string text = value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-  return text.size() > 40 ? text.substr(0, 37) + "..." : text;
-}
 
 std::string range_of(double low, double high) {
   std::ostringstream text;
@@ -24,39 +21,43 @@ bool in_range(const nlohmann::json& value, double low, double high) {
 
 }  // namespace
 
-JsonFields::JsonFields(const nlohmann::json& object, std::string where) : object_(object), where_(std::move(where)) {
+JsonFields::JsonFields(const nlohmann::json& object, std::string where, std::initializer_list<const char*> known)
+    : object_(object), where_(std::move(where)) {
   if (!object.is_object()) throw Error(where_ + (where_.back() == ':' ? " found " : ": found ") + shown(object) + ", expected an object");
+  std::string all;
+  for (const char* name : known) all += (all.empty() ? "" : ", ") + std::string(name);
+  for (const auto& [key, value] : object.items())
+    if (std::find(known.begin(), known.end(), key) == known.end()) fail(key, "an unknown field", "one of " + all);
 }
 
 void JsonFields::fail(const std::string& key, const std::string& found, const std::string& expected) const {
   throw Error(where(key) + ": found " + found + ", expected " + expected);
 }
 
-const nlohmann::json& JsonFields::at(const char* key) {
-  known_.insert(key);
+const nlohmann::json& JsonFields::at(const char* key) const {
   if (!has(key)) fail(key, "none", "one");
   return object_.at(key);
 }
 
-std::string JsonFields::text(const char* key) {
+std::string JsonFields::text(const char* key) const {
   const nlohmann::json& value = at(key);
   if (!value.is_string()) fail(key, shown(value), "a string");
   return value.get<std::string>();
 }
 
-double JsonFields::number(const char* key, double low, double high) {
+double JsonFields::number(const char* key, double low, double high) const {
   const nlohmann::json& value = at(key);
   if (!in_range(value, low, high)) fail(key, shown(value), "a number" + range_of(low, high));
   return value.get<double>();
 }
 
-bool JsonFields::boolean(const char* key) {
+bool JsonFields::boolean(const char* key) const {
   const nlohmann::json& value = at(key);
   if (!value.is_boolean()) fail(key, shown(value), "true or false");
   return value.get<bool>();
 }
 
-glm::vec3 JsonFields::triple(const char* key, double low, double high) {
+glm::vec3 JsonFields::triple(const char* key, double low, double high) const {
   const nlohmann::json& value = at(key);
   bool good = value.is_array() && value.size() == 3;
   for (std::size_t c = 0; good && c < 3; ++c) good = in_range(value[c], low, high);
@@ -64,16 +65,9 @@ glm::vec3 JsonFields::triple(const char* key, double low, double high) {
   return {value[0].get<float>(), value[1].get<float>(), value[2].get<float>()};
 }
 
-glm::vec3 JsonFields::triple_or_number(const char* key, double low, double high) {
+glm::vec3 JsonFields::triple_or_number(const char* key, double low, double high) const {
   const nlohmann::json& value = at(key);
   return value.is_array() ? triple(key, low, high) : glm::vec3(static_cast<float>(number(key, low, high)));
-}
-
-void JsonFields::finish() const {
-  std::string expected;
-  for (const std::string& key : known_) expected += (expected.empty() ? "" : ", ") + key;
-  for (const auto& [key, value] : object_.items())
-    if (known_.count(key) == 0) fail(key, "an unknown field", "one of " + expected);
 }
 
 }  // namespace gonio

@@ -1,53 +1,31 @@
 #include <gonio/tools/render/mesh.h>
 
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
-
-#include <assimp/Importer.hpp>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
+#include <limits>
 #include <utility>
 
+#include <gonio/brdf/bytes.h>
 #include <gonio/mapping/error.h>
+#include <gonio/tools/render/read_mesh.h>
+#include <gonio/tools/render/words.h>
 
 namespace gonio {
-namespace {
 
-glm::vec3 to_vec3(const aiVector3D& v) { return {v.x, v.y, v.z}; }
-
-}  // namespace
-
-TriangleMesh load_mesh(const std::filesystem::path& path) {
-  Assimp::Importer importer;
-  // Validated, since the other steps trust indices. Points and lines are sorted out into meshes of their own.
-  // Vertices are not joined: Assimp would join those that are nearer than 1e-5, whatever the unit.
-  const aiScene* scene = importer.ReadFile(
-      path.string(), aiProcess_ValidateDataStructure | aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_PreTransformVertices);
-  if (!scene) throw Error(path.string() + ": cannot be read as a mesh: " + importer.GetErrorString());
-  TriangleMesh result;
-  bool normals = true;
-  for (unsigned m = 0; m < scene->mNumMeshes; ++m) normals = normals && scene->mMeshes[m]->HasNormals();
-  for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
-    const aiMesh& mesh = *scene->mMeshes[m];
-    if (!(mesh.mPrimitiveTypes & aiPrimitiveType_TRIANGLE)) continue;
-    const auto first = static_cast<std::uint32_t>(result.positions.size());
-    for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
-      result.positions.push_back(to_vec3(mesh.mVertices[v]));
-      if (normals) {
-        const glm::vec3 n = to_vec3(mesh.mNormals[v]);
-        const float length = glm::length(n);
-        result.normals.push_back(length > 0 ? n / length : n);
-      }
-    }
-    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
-      const unsigned* index = mesh.mFaces[f].mIndices;
-      result.triangles.push_back({first + index[0], first + index[1], first + index[2]});
-    }
-  }
-  if (result.triangles.empty()) throw Error(path.string() + ": found no triangle, expected a mesh");
-  return result;
+TriangleMesh read_mesh(std::string_view bytes, const std::string& where) {
+  // Every vertex takes a byte and more: so its index has 32 bits.
+  if (bytes.size() > std::numeric_limits<std::uint32_t>::max()) throw Error(where + ": found " + std::to_string(bytes.size()) + " bytes, expected at most 4 GiB");
+  std::string_view rest = bytes;
+  const bool ply = !bytes.empty() && next_line(rest) == "ply";
+  TriangleMesh mesh = ply ? read_ply(bytes, where) : read_obj(bytes, where);
+  if (mesh.triangles.empty()) throw Error(where + ": found no triangle, expected a mesh");
+  for (glm::vec3& n : mesh.normals)
+    if (const float length = glm::length(n); length > 0) n /= length;
+  return mesh;
 }
+
+TriangleMesh load_mesh(const std::filesystem::path& path) { return read_mesh(read_bytes(path), path.string()); }
 
 void transform(TriangleMesh& mesh, const glm::mat4& matrix) {
   const glm::mat3 linear(matrix), to_normal = glm::transpose(glm::inverse(linear));

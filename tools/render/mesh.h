@@ -6,6 +6,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace gonio {
@@ -17,10 +18,13 @@ struct TriangleMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// Reads an OBJ or PLY file (any that Assimp reads); all its meshes together. Polygons are
-/// triangulated; points and lines are left out.
-/// @throws Error if it cannot be read, or holds no triangle.
+/// Reads an OBJ or PLY file, told apart by content; all its meshes together. Polygons are triangulated;
+/// points, lines, materials and texture coordinates are left out.
+/// @throws Error if it cannot be read, is damaged, or holds no triangle.
 TriangleMesh load_mesh(const std::filesystem::path& path);
+
+/// The same from the bytes of a file. @param where name for messages
+TriangleMesh read_mesh(std::string_view bytes, const std::string& where);
 
 /// A shape that needs no file:
 /// "square": [-1, 1]^2 at z = 0, facing +z; "sphere": radius 1 about the origin;

@@ -9,6 +9,7 @@
 
 #include <gonio/brdf/bytes.h>
 #include <gonio/brdf/exr/stack_file.h>
+#include <gonio/fitting/parse_json.h>
 #include <gonio/mapping/error.h>
 #include <gonio/mapping/light/exr/light_exr.h>
 #include <gonio/tools/input.h>
@@ -31,7 +32,7 @@ std::string number(double x) {
 class SceneReader {
  public:
   SceneReader(const nlohmann::json& json, const std::string& where, fs::path folder, const CellPolicies& policies)
-      : fields_(json, where + ":"), folder_(std::move(folder)), policies_(policies) {}
+      : fields_(json, where + ":", {"camera", "environment", "materials", "objects", "lights"}), folder_(std::move(folder)), policies_(policies) {}
 
   Scene read() {
     if (fields_.has("camera")) camera();
@@ -39,7 +40,6 @@ class SceneReader {
     materials();
     objects();
     if (fields_.has("lights")) lights();
-    fields_.finish();
     return std::move(scene_);
   }
 
@@ -47,7 +47,7 @@ class SceneReader {
   fs::path file(JsonFields& fields) const { return folder_ / fields.text("file"); }
 
   void camera() {
-    JsonFields f = fields_.object("camera");
+    JsonFields f = fields_.object("camera", {"position", "target", "up", "vertical_fov", "resolution"});
     Camera& c = scene_.camera;
     c.position = f.triple("position");
     c.target = f.triple("target");
@@ -56,56 +56,53 @@ class SceneReader {
     if (f.has("resolution")) {
       const nlohmann::json& r = f.at("resolution");
       const auto side = [](const nlohmann::json& n) { return n.is_number_integer() && n.get<double>() >= 1 && n.get<double>() <= 16384; };
-      if (!r.is_array() || r.size() != 2 || !side(r[0]) || !side(r[1])) f.fail("resolution", r.dump(), "two whole numbers from 1 to 16384");
+      if (!r.is_array() || r.size() != 2 || !side(r[0]) || !side(r[1])) f.fail("resolution", shown(r), "two whole numbers from 1 to 16384");
       c.width = r[0].get<int>(), c.height = r[1].get<int>();
     }
-    f.finish();
     if (!(glm::length(glm::cross(c.target - c.position, c.up)) > 1e-6f * glm::length(c.target - c.position) * glm::length(c.up)))
       f.fail("target", "a view along up, or of no length", "another target, or another up");
   }
 
   void environment() {
-    JsonFields f = fields_.object("environment");
+    JsonFields f = fields_.object("environment", {"file", "sky", "constant", "scale", "turn"});
     RgbImage image;
     std::string name = fields_.where("environment");
+    const int kinds = f.has("file") + f.has("sky") + f.has("constant");
+    if (kinds != 1) f.fail("file", kinds == 0 ? "none" : "another as well", "one of file, sky and constant");
     if (f.has("file")) {
       image = load_rgb(file(f));
       name = file(f).string();
     } else if (f.has("sky")) {
-      JsonFields sky = f.object("sky");
+      JsonFields sky = f.object("sky", {"sun", "radius", "radiance"});
       const glm::vec3 sun = sky.triple("sun");
       if (!(glm::length(sun) > 0)) sky.fail("sun", "no direction", "a vector towards the sun");
       const double radius = sky.has("radius") ? sky.number("radius", 0.5, 45) : 2.5;
       const double radiance = sky.has("radiance") ? sky.number("radiance", 0, max_radiance) : 300;
-      sky.finish();
       image = make_sky(glm::normalize(sun), degree * static_cast<float>(radius), static_cast<float>(radiance));
-    } else if (f.has("constant")) {
-      image = {4, 2, std::vector<glm::vec3>(8, f.triple_or_number("constant", 0, max_radiance))};
     } else {
-      f.fail("file", "none", "file, sky or constant");
+      image = {4, 2, std::vector<glm::vec3>(8, f.triple_or_number("constant", 0, max_radiance))};
     }
     const glm::vec3 scale = f.has("scale") ? f.triple_or_number("scale", 0, max_radiance) : glm::vec3(1);
     for (glm::vec3& p : image.pixels) p *= scale;
     const float turn = f.has("turn") ? degree * static_cast<float>(f.number("turn", -360, 360)) : 0;
-    f.finish();
     scene_.environment = std::make_shared<const Environment>(std::move(image), name, turn);
   }
 
   void materials() {
     const nlohmann::json& all = fields_.at("materials");
-    if (!all.is_object()) fields_.fail("materials", all.dump().substr(0, 40), "an object");
+    if (!all.is_object()) fields_.fail("materials", shown(all), "an object");
     for (const auto& [name, value] : all.items()) {
-      JsonFields f(value, fields_.where("materials." + name));
+      JsonFields f(value, fields_.where("materials." + name), {"file", "albedo", "sampling", "two_sided"});
       Material m;
       m.name = name;
       if (f.has("albedo") == f.has("file")) f.fail("file", f.has("file") ? "albedo as well" : "none", "file or albedo");
       if (f.has("albedo")) {
+        if (f.has("sampling")) f.fail("sampling", "one", "none: a Lambertian is sampled by its cosine");
         m.bsdf = make_bsdf(LambertSampler(f.triple_or_number("albedo", 0, 1)));
       } else {
         load(m, f);
       }
       if (f.has("two_sided")) m.two_sided = f.boolean("two_sided");
-      f.finish();
       index_[name] = scene_.materials.size();
       scene_.materials.push_back(std::move(m));
     }
@@ -145,7 +142,7 @@ class SceneReader {
     if (f.has("scale") && scaled) {
       const glm::vec3 scale = f.triple_or_number("scale");
       for (int c = 0; c < 3; ++c)
-        if (std::abs(scale[c]) < static_cast<float>(smallest)) f.fail("scale", f.at("scale").dump(), "sizes from " + number(smallest));
+        if (std::abs(scale[c]) < static_cast<float>(smallest)) f.fail("scale", shown(f.at("scale")), "sizes from " + number(smallest));
       m = glm::scale(m, scale);
     }
     return m;
@@ -153,10 +150,11 @@ class SceneReader {
 
   void objects() {
     const nlohmann::json& all = fields_.at("objects");
-    if (!all.is_array() || all.empty()) fields_.fail("objects", all.dump().substr(0, 40), "an array of objects");
+    if (!all.is_array() || all.empty()) fields_.fail("objects", shown(all), "an array of objects");
     glm::vec3 low(json_limit), high(-json_limit);
     for (std::size_t k = 0; k < all.size(); ++k) {
-      JsonFields f(all[k], fields_.where("objects[" + std::to_string(k) + "]"));
+      JsonFields f(all[k], fields_.where("objects[" + std::to_string(k) + "]"),
+                   {"shape", "file", "material", "scale", "rotate", "translate", "emission"});
       Object object;
       if (f.has("shape") == f.has("file")) f.fail("shape", f.has("shape") ? "file as well" : "none", "shape or file");
       TriangleMesh mesh = f.has("shape") ? make_shape(f.text("shape"), f.where("shape")) : load_mesh(file(f));
@@ -174,7 +172,6 @@ class SceneReader {
       if (found == index_.end()) f.fail("material", "'" + material + "'", "the name of one of the materials");
       object.material = found->second;
       if (f.has("emission")) object.emission = f.triple_or_number("emission", 0, max_radiance);
-      f.finish();
       scene_.objects.push_back(std::move(object));
     }
     const double radius = static_cast<double>(glm::length(high - low)) / 2;
@@ -183,16 +180,15 @@ class SceneReader {
 
   void lights() {
     const nlohmann::json& all = fields_.at("lights");
-    if (!all.is_array()) fields_.fail("lights", all.dump().substr(0, 40), "an array of objects");
+    if (!all.is_array()) fields_.fail("lights", shown(all), "an array of objects");
     for (std::size_t k = 0; k < all.size(); ++k) {
-      JsonFields f(all[k], fields_.where("lights[" + std::to_string(k) + "]"));
+      JsonFields f(all[k], fields_.where("lights[" + std::to_string(k) + "]"), {"file", "position", "rotate", "scale"});
       GoniometricLight light;
       Deviations deviations;
       light.emission = std::make_shared<const EmissionSampler<float>>(load_any_light(file(f), {}, deviations).diagram);
       light.position = f.triple("position");
       light.to_light = glm::transpose(glm::mat3(placement(f, false)));
       light.scale = f.has("scale") ? f.triple_or_number("scale", 0, max_radiance) : glm::vec3(1);
-      f.finish();
       scene_.lights.push_back(std::move(light));
     }
   }
@@ -211,13 +207,7 @@ Scene make_scene(const nlohmann::json& json, const std::string& where, const fs:
 }
 
 Scene read_scene(const fs::path& path, const CellPolicies& policies) {
-  nlohmann::json json;
-  try {
-    json = nlohmann::json::parse(read_bytes(path));
-  } catch (const nlohmann::json::exception& e) {
-    throw Error(path.string() + ": found no valid JSON, expected a scene: " + e.what());
-  }
-  return make_scene(json, path.string(), path.parent_path(), policies);
+  return make_scene(parse_json(read_bytes(path), path.string()), path.string(), path.parent_path(), policies);
 }
 
 }  // namespace gonio

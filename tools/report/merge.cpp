@@ -5,6 +5,7 @@
 #include <ostream>
 
 #include <gonio/brdf/bytes.h>
+#include <gonio/fitting/parse_json.h>
 #include <gonio/mapping/atomic_file.h>
 #include <gonio/mapping/error.h>
 #include <gonio/tools/report/write_page.h>
@@ -24,8 +25,7 @@ const Json& member(const Json& object, const char* key) {
 std::string string_of(const Json& value) { return value.is_string() ? value.get<std::string>() : ""; }
 
 Json load_report(const std::filesystem::path& path) {
-  const Json report = Json::parse(read_bytes(path), nullptr, false);
-  if (report.is_discarded()) throw Error(path.string() + ": content: found no JSON, expected a report.json");
+  const Json report = parse_json(read_bytes(path), path.string());
   for (const char* key : {"materials", "lights"}) {
     if (!report.is_object() || !report.contains(key) || !report[key].is_array())
       throw Error(path.string() + ": " + key + ": found none, expected the list of a report.json");
@@ -37,7 +37,7 @@ Json load_report(const std::filesystem::path& path) {
   }
   const Json& version = member(report, "gonio_version");
   if (version != GONIO_VERSION)
-    throw Error(path.string() + ": gonio_version: found " + version.dump() + ", expected \"" GONIO_VERSION "\"");
+    throw Error(path.string() + ": gonio_version: found " + shown(version) + ", expected \"" GONIO_VERSION "\"");
   return report;
 }
 

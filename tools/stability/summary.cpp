@@ -1,20 +1,19 @@
 #include <gonio/tools/stability/summary.h>
 #include <gonio/tools/number.h>
 
+#include <gonio/brdf/bytes.h>
+#include <gonio/fitting/parse_json.h>
 #include <gonio/mapping/error.h>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <ostream>
 #include <string>
 #include <vector>
 
 namespace gonio {
 nlohmann::json read_stability(const std::filesystem::path& path) {
-  std::ifstream in(path);
-  if (!in) throw Error(path.string() + ": cannot be opened, expected the stability.json of gonio stability");
-  nlohmann::json json = nlohmann::json::parse(in, nullptr, false);
+  nlohmann::json json = parse_json(read_bytes(path), path.string());
   if (!json.is_object() || !json.contains("rows") || !json["rows"].is_array() || json["rows"].empty())
     throw Error(path.string() + ": rows: found none, expected the stability.json of gonio stability");
   const std::vector<std::pair<const char*, nlohmann::json::value_t>> keys = {
