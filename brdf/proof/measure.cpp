@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <gonio/brdf/frame.h>
+#include <gonio/brdf/proof/edges.h>
 #include <gonio/brdf/proof/random.h>
 
 namespace gonio::proof {
@@ -108,6 +109,7 @@ Quality measure(const Subject& subject, double theta_i, const MeasureOptions& op
       },
       pdf, bins, options.chi2_draws);
   q.pdf_integral = q.chi2.pdf_integral;
+  q.max_direction_weight = scan_directions(subject, theta_i, 128).largest_weight;
   return q;
 }
 

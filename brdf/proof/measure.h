@@ -49,7 +49,8 @@ struct MeasureOptions {
 struct Quality {
   double theta_i;             ///< [rad]
   double relvar;              ///< Var[w] / E[w]^2 of the luminance weight w; 0 is perfect; empty draws count as 0
-  double max_weight;          ///< the largest luminance weight over the mean one
+  double max_weight;          ///< the largest luminance weight of the draws over the mean one
+  double max_direction_weight;  ///< the same of any direction: what light sampling meets; see scan_directions()
   double invalid_fraction;    ///< share of empty draws
   double pdf_integral;        ///< by quadrature of pdf(), no draw involved
   glm::dvec3 albedo;          ///< mean weight: the albedo as the sampler estimates it

@@ -35,6 +35,7 @@ nlohmann::json to_json(const proof::Quality& q) {
   return {{"theta_i_deg", std::round(degrees(q.theta_i) * 1e6) / 1e6},
           {"relvar", q.relvar},
           {"max_weight", q.max_weight},
+          {"max_direction_weight", q.max_direction_weight},
           {"invalid_fraction", q.invalid_fraction},
           {"pdf_integral", q.pdf_integral},
           {"albedo", rgb(q.albedo)},
@@ -101,11 +102,11 @@ void write_markdown(std::ostream& out, const Report& report) {
       }
     }
     write_lobes(out, material);
-    out << "\n| method | θi | max weight | invalid | pdf integral | albedo sampled | albedo table | χ² p |\n|---|---|---|---|---|---|---|---|\n";
+    out << "\n| method | θi | max weight of draws | of directions | invalid | pdf integral | albedo sampled | albedo table | χ² p |\n|---|---|---|---|---|---|---|---|---|\n";
     for (const MethodReport& m : material.methods) {
       for (const auto& q : m.angles) {
-        out << "| " << m.id << " | " << number(degrees(q.theta_i)) << "° | " << number(q.max_weight) << " | " << number(q.invalid_fraction) << " | "
-            << number(q.pdf_integral, 5);
+        out << "| " << m.id << " | " << number(degrees(q.theta_i)) << "° | " << number(q.max_weight) << " | " << number(q.max_direction_weight) << " | "
+            << number(q.invalid_fraction) << " | " << number(q.pdf_integral, 5);
         for (const auto& a : {q.albedo, q.albedo_table})
           out << " | " << number(a.r, 4) << ' ' << number(a.g, 4) << ' ' << number(a.b, 4);
         out << " | " << number(q.chi2.p, 2) << " |\n";
