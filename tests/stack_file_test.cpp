@@ -386,6 +386,18 @@ const Fault faults[] = {
      "attribute gonio:format"},
     {"ColourBetween", [](Parts& p) { std::swap(p[1], p[2]); },
      "a part after colour"},
+    {"FirstPartRenamed", [](Parts& p) { p[0].header.setName("picture"); }, "name of part 0: found picture, expected diagram.000"},
+    {"FirstPartMissing",
+     [](Parts& p) {
+       p[0].header.setName("diagram.001");
+       p[1].header.setName("diagram.002");
+     },
+     "name of part 0: found diagram.001, expected diagram.000"},
+    {"GapInTheNumbers", [](Parts& p) { p[1].header.setName("diagram.002"); },
+     "name of part 1: found diagram.002, expected diagram.001"},
+    {"ShortNumber", [](Parts& p) { p[1].header.setName("diagram.1"); }, "name of part 1: found diagram.1, expected diagram.001"},
+    {"ColourRenamed", [](Parts& p) { p[2].header.setName("color"); },
+     "name of part 2: found color, expected diagram.002, or colour as the last part"},
     {"NoDiagram", [](Parts& p) { p.resize(1), p[0].header.setName("colour"); }, "part colour"},
 };
 

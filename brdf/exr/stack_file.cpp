@@ -117,6 +117,12 @@ int checked_size(const std::string& file, const std::string& field, std::size_t 
   return static_cast<int>(size);
 }
 
+std::string diagram_name(std::size_t k) {
+  std::string number = std::to_string(k);
+  number.insert(0, number.size() < 3 ? 3 - number.size() : 0, '0');
+  return "diagram." + number;
+}
+
 StackFile load(const std::string& file) {
   check_attribute_sizes(file);
   Imf::MultiPartInputFile input(file.c_str(), 1);
@@ -154,6 +160,8 @@ StackFile load(const std::string& file) {
       result.colour = Colour(std::move(theta_i), side, values);
       continue;
     }
+    if (const std::string name = diagram_name(result.diagrams.theta_i.size()); header.name() != name)
+      fail(file, "name of part " + std::to_string(k), header.name(), name + ", or colour as the last part");
     const std::string field = "part " + header.name() + ": ";
     DiagramGrid grid;
     grid.azimuth = Azimuth::half;
@@ -176,9 +184,7 @@ void save_stack(const std::filesystem::path& path, const StackFile& file) {
     const DiagramGrid& grid = file.diagrams.diagrams[k];
     if (grid.azimuth != Azimuth::half)
       fail(path.string(), "diagram " + std::to_string(k), "a full azimuth", "half, mirrored");
-    std::string number = std::to_string(k);
-    number.insert(0, number.size() < 3 ? 3 - number.size() : 0, '0');
-    Part part = make_part("diagram." + number, static_cast<int>(grid.r.size()), static_cast<int>(grid.phi.size()), {"Y"});
+    Part part = make_part(diagram_name(k), static_cast<int>(grid.r.size()), static_cast<int>(grid.phi.size()), {"Y"});
     part.header.insert("gonio:theta_i", Imf::FloatAttribute(static_cast<float>(file.diagrams.theta_i[k])));
     part.header.insert("gonio:phi", Imf::FloatVectorAttribute(to_float(grid.phi)));
     part.header.insert("gonio:r", Imf::FloatVectorAttribute(to_float(grid.r)));
