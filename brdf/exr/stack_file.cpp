@@ -19,9 +19,9 @@
 
 #include <algorithm>
 #include <cstring>
-#include <fstream>
 #include <vector>
 
+#include <gonio/brdf/bytes.h>
 #include <gonio/brdf/exr/check_attributes.h>
 #include <gonio/mapping/atomic_file.h>
 #include <gonio/mapping/error.h>
@@ -254,12 +254,8 @@ StackFile load_stack(const std::filesystem::path& path) {
 }
 
 bool is_exr(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  char magic[4] = {};
-  if (std::filesystem::is_directory(path) || !stream)
-    throw Error(path.string() + ": cannot be read, expected a readable file");
-  stream.read(magic, sizeof(magic));
-  return stream.gcount() == sizeof(magic) && Imf::isImfMagic(magic);
+  const std::string magic = read_bytes(path, 4);
+  return magic.size() == 4 && Imf::isImfMagic(magic.data());
 }
 
 CompactBsdf load_compact(const std::filesystem::path& path) {
