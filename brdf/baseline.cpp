@@ -44,7 +44,7 @@ float CosineSampler::pdf(const glm::vec3& wi, const glm::vec3& wo) const noexcep
 }
 
 RglSampler::RglSampler(std::shared_ptr<const BrdfTable> table)
-    : table_(std::move(table)), rgl_(std::get_if<RglTable>(&table_->data())) {
+    : table_(required_table(std::move(table), "RGL sampler")), rgl_(std::get_if<RglTable>(&table_->data())) {
   if (!rgl_)
     throw Error(table_->info().source + ": format: found " + table_->info().format + ", expected rgl");
 }

@@ -13,7 +13,8 @@ namespace gonio {
 /// Every direction of the hemisphere alike: pdf = 1 / 2 pi.
 class UniformSampler {
  public:
-  explicit UniformSampler(std::shared_ptr<const BrdfTable> table) : table_(std::move(table)) {}
+  /// @throws Error if `table` is null.
+  explicit UniformSampler(std::shared_ptr<const BrdfTable> table) : table_(required_table(std::move(table), "uniform sampler")) {}
   std::optional<BsdfSample> sample(const glm::vec3& wi, const glm::vec2& u) const noexcept;
   float pdf(const glm::vec3& wi, const glm::vec3& wo) const noexcept;
   glm::vec3 eval(const glm::vec3& wi, const glm::vec3& wo) const noexcept { return table_->eval(wi, wo); }
@@ -26,7 +27,8 @@ class UniformSampler {
 /// In proportion to the cosine: pdf = cos theta_o / pi.
 class CosineSampler {
  public:
-  explicit CosineSampler(std::shared_ptr<const BrdfTable> table) : table_(std::move(table)) {}
+  /// @throws Error if `table` is null.
+  explicit CosineSampler(std::shared_ptr<const BrdfTable> table) : table_(required_table(std::move(table), "cosine sampler")) {}
   std::optional<BsdfSample> sample(const glm::vec3& wi, const glm::vec2& u) const noexcept;
   float pdf(const glm::vec3& wi, const glm::vec3& wo) const noexcept;
   glm::vec3 eval(const glm::vec3& wi, const glm::vec3& wo) const noexcept { return table_->eval(wi, wo); }
@@ -40,7 +42,7 @@ class CosineSampler {
 /// some draws fall below the horizon and are empty.
 class RglSampler {
  public:
-  /// @throws Error if the table is not an RGL table.
+  /// @throws Error if `table` is null or not an RGL table.
   explicit RglSampler(std::shared_ptr<const BrdfTable> table);
   std::optional<BsdfSample> sample(const glm::vec3& wi, const glm::vec2& u) const noexcept;
   float pdf(const glm::vec3& wi, const glm::vec3& wo) const noexcept;

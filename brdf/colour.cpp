@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <string>
 
 #include <gonio/brdf/parallel.h>
@@ -10,6 +11,11 @@
 #include <gonio/mapping/folded_disk.h>
 
 namespace gonio {
+namespace {
+
+constexpr float max_weight = 1e6f;  // no material comes near; products with a pdf and 1 / cosine stay finite
+
+}  // namespace
 
 Colour::Colour(std::vector<float> theta_i, int side, const std::vector<glm::vec3>& values)
     : side_(side), theta_i_(std::move(theta_i)) {
@@ -25,8 +31,11 @@ Colour::Colour(std::vector<float> theta_i, int side, const std::vector<glm::vec3
     throw Error("colour: found " + std::to_string(values.size()) + " values, expected " + std::to_string(expected));
   for (const glm::vec3& w : values) {
     for (int c = 0; c < 3; ++c) {
-      if (!(w[c] >= 0 && std::isfinite(w[c])))
-        throw Error("colour: found " + std::to_string(w[c]) + ", expected finite values >= 0");
+      if (!(w[c] >= 0 && w[c] <= max_weight)) {
+        std::ostringstream found;
+        found << w[c];
+        throw Error("colour: found " + found.str() + ", expected weights from 0 to 1e6");
+      }
       largest_ = std::max(largest_, w[c]);
     }
   }

@@ -36,7 +36,7 @@ class Colour {
 
   /// @param theta_i K >= 1 incident angles [rad], ascending, in [0, pi/2].
   /// @param values K x side/2 x side weights, v slower than u. @throws Error for bad angles, a wrong count, or
-  ///   values that are negative or not finite.
+  ///   values that are not from 0 to 1e6.
   Colour(std::vector<float> theta_i, int side, const std::vector<glm::vec3>& values);
 
   /// The mean weight of every cell, by stratified samples, 128 x 64 over all cells but at least 2 x 2 in each: the

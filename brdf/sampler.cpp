@@ -8,16 +8,16 @@
 namespace gonio {
 
 Sampler::Sampler(std::shared_ptr<const BrdfTable> table, const Progress& progress)
-    : stack_(fit_compact(*table, {}, progress).best().diagrams, Interpolation::blend, Storage::packed16),
-      table_(std::move(table)) {}
+    : table_(required_table(std::move(table), "sampler")),
+      stack_(fit_compact(*table_, {}, progress).best().diagrams, Interpolation::blend, Storage::packed16) {}
 
 Sampler::Sampler(std::shared_ptr<const BrdfTable> table, const StackOptions& options, const Progress& progress)
-    : stack_(build_stack(*table, options, progress), options.interpolation, Storage::float32),
-      table_(std::move(table)) {}
+    : table_(required_table(std::move(table), "sampler")),
+      stack_(build_stack(*table_, options, progress), options.interpolation, Storage::float32) {}
 
 Sampler::Sampler(std::shared_ptr<const BrdfTable> table, const StackGrid& diagrams, Interpolation interpolation,
                  Storage storage)
-    : stack_(diagrams, interpolation, storage), table_(std::move(table)) {}
+    : table_(required_table(std::move(table), "sampler")), stack_(diagrams, interpolation, storage) {}
 
 std::optional<BsdfSample> Sampler::sample(const glm::vec3& wi, const glm::vec2& u) const noexcept {
   if (!(is_above(wi) && std::isfinite(u.x + u.y))) return std::nullopt;

@@ -22,6 +22,8 @@ namespace gonio {
 /// constructors allocates or locks.
 class Sampler {
  public:
+  /// Every constructor throws Error if `table` is null.
+  ///
   /// With the diagrams that fit_compact() chooses, in 16 bits, blended. Takes seconds.
   explicit Sampler(std::shared_ptr<const BrdfTable> table, const Progress& progress = {});
 
@@ -49,8 +51,8 @@ class Sampler {
   std::size_t bytes() const noexcept { return sizeof(*this) - sizeof(stack_) + stack_.bytes(); }
 
  private:
+  std::shared_ptr<const BrdfTable> table_;  // before the stack, which is built of it
   AnyStack stack_;
-  std::shared_ptr<const BrdfTable> table_;
 };
 
 }  // namespace gonio

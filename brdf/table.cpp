@@ -48,6 +48,11 @@ float BrdfTable::measured(const glm::vec3& wi, const glm::vec3& wo) const noexce
   return std::visit([&](const auto& table) { return table.measured(wi, wo); }, data_);
 }
 
+std::shared_ptr<const BrdfTable> required_table(std::shared_ptr<const BrdfTable> table, const std::string& user) {
+  if (!table) throw Error(user + ": table: found none, expected one");
+  return table;
+}
+
 BrdfTable load_table(const std::filesystem::path& path, const CellPolicies& policies) {
   try {
     return load(path, policies);

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <string>
 #include <variant>
 
@@ -56,6 +57,9 @@ class BrdfTable {
 /// @throws Error if the file cannot be read, is none of the formats, is damaged, or holds a material
 ///   that is not isotropic or has no reflection; the message says which field is at fault.
 BrdfTable load_table(const std::filesystem::path& path, const CellPolicies& policies = {});
+
+/// `table` itself. @throws Error if it is null; `user` says what needs it.
+std::shared_ptr<const BrdfTable> required_table(std::shared_ptr<const BrdfTable> table, const std::string& user);
 
 /// Rec. 709 luminance of a linear RGB triple.
 inline float luminance(const glm::vec3& rgb) noexcept {

@@ -15,7 +15,7 @@ constexpr double last_angle = 89 * pi<double> / 180;
 
 LobeSampler::LobeSampler(std::shared_ptr<const BrdfTable> table, const LobeModel& model,
                          const LobeSamplerOptions& options)
-    : table_(std::move(table)) {
+    : table_(required_table(std::move(table), "lobe sampler")) {
   if (model.specular_count() > max_lobes) {
     throw Error("lobe sampler: the model has " + std::to_string(model.specular_count()) +
                 " specular lobes; expected at most " + std::to_string(max_lobes));

@@ -44,7 +44,7 @@ class LobeSampler {
   static constexpr int max_lobes = 4;  ///< specular ones
 
   /// Takes up to a few seconds with Adaption::shapes.
-  /// @throws Error if the model has more than max_lobes specular lobes or an option is out of
+  /// @throws Error if `table` is null, if the model has more than max_lobes specular lobes or an option is out of
   /// range.
   LobeSampler(std::shared_ptr<const BrdfTable> table, const LobeModel& model,
               const LobeSamplerOptions& options = {});

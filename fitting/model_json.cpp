@@ -128,6 +128,8 @@ LobeModel model_from_json(std::string_view text, const std::string& where) {
   if (reader.text(root, "the file", "format") != "gonio model") {
     reader.fail("format is " + shown(root["format"]) + "; expected \"gonio model\"");
   }
+  if (root.contains("version") && root["version"] != 1)
+    reader.fail("version is " + root["version"].dump() + "; expected 1");
   LobeModel model;
   model.name = reader.text(root, "the file", "name");
   const json& lobes = reader.member(root, "the file", "lobes");

@@ -81,6 +81,8 @@ TEST(Colour, RefusesBadInput) {
   EXPECT_THROW(Colour({2.0f}, 2, two), Error);
   EXPECT_THROW(Colour({0.1f}, 2, {{1, 1, 1}, {-1, 1, 1}}), Error);
   EXPECT_THROW(Colour({0.1f}, 2, {{1, 1, 1}}), Error);
+  EXPECT_THROW(Colour({0.1f}, 2, {{1, 1.001e6f, 1}, {1, 1, 1}}), Error);
+  EXPECT_NO_THROW(Colour({0.1f}, 2, {{1, 1e6f, 1}, {1, 1, 1}}));
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include <gonio/tools/render/exr_image.h>
 
+#include <gonio/brdf/exr/disk_image_file.h>
+#include <gonio/brdf/exr/stack_file.h>
 #include <gonio/mapping/error.h>
 #include <gonio/tests/table_files.h>
 #include <gtest/gtest.h>
@@ -32,6 +34,33 @@ TEST(ExrImage, RefusesOtherFiles) {
   EXPECT_THROW(load_rgb(folder / "none.exr"), Error);
   RgbImage a{1, 1, {glm::vec3(1)}};
   EXPECT_THROW(save_layers(folder.path() / "no" / "a.exr", {{"", {"R"}, &a}}), Error);
+}
+
+std::string message_of(const std::filesystem::path& path) {
+  try {
+    load_rgb(path);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// Their channels have the names of a picture's and mean something else.
+TEST(ExrImage, OtherFilesOfGonioAreNamed) {
+  const test::TemporaryFolder folder;
+  DiagramGrid diagram{Azimuth::half, {0, pi<double>}, {0, 1}, std::vector<double>(4, 1.0)};
+  StackFile stack;
+  stack.diagrams.theta_i = {0};
+  stack.diagrams.diagrams = {diagram};
+  stack.colour = Colour({0}, 2, std::vector<glm::vec3>(2, glm::vec3(0.5f)));
+  save_stack(folder / "stack.exr", stack);
+  EXPECT_NE(message_of(folder / "stack.exr").find("stack.exr: content: found a stack file, expected a picture"), std::string::npos)
+      << message_of(folder / "stack.exr");
+  DiskImage disk(4);
+  disk.values.assign(16, 1.0f);
+  save_disk_image(folder / "d.exr", disk, "D");
+  EXPECT_NE(message_of(folder / "d.exr").find("d.exr: content: found an image of a normal distribution, expected a picture"), std::string::npos)
+      << message_of(folder / "d.exr");
 }
 
 }  // namespace

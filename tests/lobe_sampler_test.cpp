@@ -229,6 +229,7 @@ TEST(LobeSampler, OptionsOutOfRangeAreRefused) {
   refused([](LobeSamplerOptions& o) { o.cosine_share = 0; });
   refused([](LobeSamplerOptions& o) { o.cosine_share = 1.5f; });
   EXPECT_THROW(LobeSampler(table(), parse_model("ggx+ggx+ggx+ggx+ggx")), Error);
+  EXPECT_THROW(LobeSampler(nullptr, paint()), Error);
 }
 
 TEST(ShearedGgx, WithoutShearIsGgxBeforeMirroring) {

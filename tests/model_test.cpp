@@ -126,6 +126,8 @@ TEST(ModelJson, SaysWhatIsWrong) {
   expect("{}", "no member 'format'");
   expect("[]", "no member 'format'");
   expect(changed("gonio model", "something"), "expected \"gonio model\"");
+  expect(changed("\"version\": 1", "\"version\": 99"), "version is 99; expected 1");
+  expect(changed("\"version\": 1", "\"version\": \"1\""), "version is \"1\"; expected 1");
   expect(changed("\"lobes\"", "\"no_lobes\""), "no member 'lobes'");
   expect(changed("\"lobe\": \"ggx\"", "\"lobe\": \"gxx\""), "lobes[0].lobe is 'gxx'");
   expect(

@@ -141,6 +141,16 @@ TEST(Sampler, BlackTableGivesBlack) {
   EXPECT_NEAR(q.pdf_integral, 1, 1e-3);
 }
 
+TEST(Sampler, NeedsATable) {
+  const std::shared_ptr<const BrdfTable> none;
+  EXPECT_THROW(Sampler{none}, Error);
+  EXPECT_THROW(Sampler(none, StackOptions{}), Error);
+  EXPECT_THROW(Sampler(none, build_stack(*glossy_table())), Error);
+  EXPECT_THROW(UniformSampler{none}, Error);
+  EXPECT_THROW(CosineSampler{none}, Error);
+  EXPECT_THROW(RglSampler{none}, Error);
+}
+
 TEST(Sampler, SharedBetweenThreads) {
   const auto sum = [] {
     proof::Random random(11);

@@ -271,6 +271,48 @@ TEST_F(StackFileTest, AnyByteDamaged) {
   EXPECT_GT(refused, static_cast<int>(bytes.size()));
 }
 
+/// The first number of what the BSDF says that is no number, infinite or negative; empty if there is none.
+std::string not_finite(const CompactBsdf& bsdf) {
+  const auto good = [](float value) { return value >= 0 && std::isfinite(value); };
+  const auto all_good = [&](const glm::vec3& v) { return good(v.r) && good(v.g) && good(v.b); };
+  for (const float theta_i : {0.0f, 0.3f, 0.65f, 1.0f, 1.35f, 1.57f}) {
+    const glm::vec3 wi(std::sin(theta_i), 0, std::cos(theta_i));
+    const auto where = " at theta_i = " + std::to_string(theta_i);
+    for (int k = 0; k < 64; ++k) {
+      const float u = static_cast<float>(k % 8) / 7 * (1 - 0x1p-24f), v = static_cast<float>(k / 8) / 7 * (1 - 0x1p-24f);
+      const auto drawn = bsdf.sample(wi, {u, v});
+      if (drawn && !(good(drawn->pdf) && all_good(drawn->weight) && std::abs(drawn->wo.z) <= 1)) return "a draw" + where;
+      const float z = std::max(u, 1e-6f), r = std::sqrt(1 - z * z), phi = 2 * pi<float> * v;
+      const glm::vec3 wo(r * std::cos(phi), r * std::sin(phi), z);
+      if (!good(bsdf.pdf(wi, wo))) return "a pdf" + where;
+      if (!all_good(bsdf.eval(wi, wo))) return "f_r" + where;
+    }
+  }
+  return "";
+}
+
+TEST_F(StackFileTest, WhatIsAcceptedIsFinite) {
+  for (const StackFile& saved : {make_file(2, 2), make_packed_file()}) {
+    save_stack(path("a.exr"), saved);
+    const std::string bytes = read_bytes(path("a.exr"));
+    int accepted = 0;
+    for (std::size_t at = 0; at < bytes.size(); ++at) {
+      for (const int flip : {0x40, 0x7f, 0xff}) {
+        std::string damaged = bytes;
+        damaged[at] = static_cast<char>(damaged[at] ^ flip);
+        write_bytes(path("b.exr"), damaged);
+        try {
+          const CompactBsdf bsdf = load_compact(path("b.exr"));
+          ++accepted;
+          EXPECT_EQ(not_finite(bsdf), "") << "byte " << at << " with " << flip;
+        } catch (const Error&) {  // refused: as good
+        }
+      }
+    }
+    EXPECT_GT(accepted, 0);  // words, at least
+  }
+}
+
 TEST_F(StackFileTest, OtherImagesAreRefused) {
   std::vector<Imf::Rgba> pixels(16 * 16);
   {
@@ -380,12 +422,25 @@ const Fault faults[] = {
     {"DensityNegative", [](Parts& p) { p[0].pixels[5] = -1; }, "density[5]: found -1"},
     {"DensityZero", [](Parts& p) { p[0].pixels.assign(6, 0.0f); }, "zero everywhere"},
     {"ColourNotANumber", [](Parts& p) { p[2].pixels[7] = nan; }, "colour: found nan"},
+    {"ColourTooLarge", [](Parts& p) { p[2].pixels[7] = 3e38f; }, "colour: found 3e+38, expected weights from 0 to 1e6"},
     {"ColourNegative", [](Parts& p) { p[2].pixels[7] = -1; }, "colour: found -1"},
     {"ColourChannel", [](Parts& p) { p[2].channels[1] = "H"; }, "part colour: channel G"},
     {"ColourFirst", [](Parts& p) { std::swap(p[0].pixels, p[2].pixels), std::swap(p[0], p[2]); },
      "attribute gonio:format"},
     {"ColourBetween", [](Parts& p) { std::swap(p[1], p[2]); },
      "a part after colour"},
+    {"FirstPartRenamed", [](Parts& p) { p[0].header.setName("picture"); }, "name of part 0: found picture, expected diagram.000"},
+    {"FirstPartMissing",
+     [](Parts& p) {
+       p[0].header.setName("diagram.001");
+       p[1].header.setName("diagram.002");
+     },
+     "name of part 0: found diagram.001, expected diagram.000"},
+    {"GapInTheNumbers", [](Parts& p) { p[1].header.setName("diagram.002"); },
+     "name of part 1: found diagram.002, expected diagram.001"},
+    {"ShortNumber", [](Parts& p) { p[1].header.setName("diagram.1"); }, "name of part 1: found diagram.1, expected diagram.001"},
+    {"ColourRenamed", [](Parts& p) { p[2].header.setName("color"); },
+     "name of part 2: found color, expected diagram.002, or colour as the last part"},
     {"NoDiagram", [](Parts& p) { p.resize(1), p[0].header.setName("colour"); }, "part colour"},
 };
 

@@ -636,6 +636,21 @@ TEST_F(ToolTest, ValidateDoubtsAStack) {
   }
 }
 
+TEST_F(ToolTest, ValidateDoubtsAStackThatReflectsTooMuch) {
+  write("a.mbsdf", sample_mbsdf());  // albedo 0.5
+  expect_ok("convert a.mbsdf a.exr --incident 3");
+  EXPECT_EQ(execute("validate a.exr").out.find("albedo"), std::string::npos);
+  StackFile file = load_stack(path("a.exr"));
+  std::vector<glm::vec3> values = file.colour.values();
+  const std::size_t cells = values.size() / file.colour.theta_i().size();
+  for (std::size_t k = 0; k < cells; ++k) values[k].g *= 3;  // of the first layer alone
+  file.colour = Colour(file.colour.theta_i(), file.colour.side(), values);
+  save_stack(path("b.exr"), file);
+  const Outcome run = execute("validate b.exr");
+  EXPECT_EQ(run.code, 0);
+  EXPECT_TRUE(contains(run.out, "b.exr: warning: albedo: found 1.5")) << run.out;
+}
+
 // ---------------------------------------------------------------- other renderers, merged reports
 
 TEST_F(ToolTest, ConvertsToRgl) {

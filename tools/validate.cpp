@@ -13,6 +13,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <glm/vec3.hpp>
 #include <memory>
 #include <string>
 #include <vector>
@@ -36,6 +37,25 @@ void check_name(const std::filesystem::path& path, const std::string& expected,
 std::string text_of(const Error& error, const std::filesystem::path& path) {
   const std::string text = error.what(), prefix = path.string() + ": ";
   return text.compare(0, prefix.size(), prefix) == 0 ? text.substr(prefix.size()) : text;
+}
+
+/// The mean of W over the unit square, which is the albedo, is that of the cells: one layer at a time.
+void check_albedo(const Colour& colour, std::vector<Problem>& problems) {
+  constexpr double limit = 1.005;  // as for tables
+  const std::vector<glm::vec3> values = colour.values();
+  const std::size_t cells = values.size() / colour.theta_i().size();
+  double largest = 0, where = 0;
+  for (std::size_t i = 0; i < values.size(); i += cells) {
+    glm::dvec3 sum(0);
+    for (std::size_t k = i; k < i + cells; ++k) sum += glm::dvec3(values[k]);
+    const double albedo = std::max({sum.r, sum.g, sum.b}) / static_cast<double>(cells);
+    if (albedo <= largest) continue;
+    largest = albedo;
+    where = static_cast<double>(colour.theta_i()[i / cells]) * 180 / pi<double>;
+  }
+  if (largest > limit)
+    problems.push_back({"albedo", number(largest, 4) + " at " + number(where, 4) + " degrees",
+                        "at most 1, or it reflects more than it receives", false});
 }
 
 std::vector<Problem> check_stack(const std::filesystem::path& path) {
@@ -66,6 +86,8 @@ std::vector<Problem> check_stack(const std::filesystem::path& path) {
   if (file.colour.empty()) {
     problems.push_back(
         {"colour", "none", "a part colour, without which sampling needs the table", false});
+  } else {
+    check_albedo(file.colour, problems);
   }
   return problems;
 }

@@ -19,9 +19,9 @@
 
 #include <algorithm>
 #include <cstring>
-#include <fstream>
 #include <vector>
 
+#include <gonio/brdf/bytes.h>
 #include <gonio/brdf/exr/check_attributes.h>
 #include <gonio/mapping/atomic_file.h>
 #include <gonio/mapping/error.h>
@@ -117,6 +117,12 @@ int checked_size(const std::string& file, const std::string& field, std::size_t 
   return static_cast<int>(size);
 }
 
+std::string diagram_name(std::size_t k) {
+  std::string number = std::to_string(k);
+  number.insert(0, number.size() < 3 ? 3 - number.size() : 0, '0');
+  return "diagram." + number;
+}
+
 StackFile load(const std::string& file) {
   check_attribute_sizes(file);
   Imf::MultiPartInputFile input(file.c_str(), 1);
@@ -154,6 +160,8 @@ StackFile load(const std::string& file) {
       result.colour = Colour(std::move(theta_i), side, values);
       continue;
     }
+    if (const std::string name = diagram_name(result.diagrams.theta_i.size()); header.name() != name)
+      fail(file, "name of part " + std::to_string(k), header.name(), name + ", or colour as the last part");
     const std::string field = "part " + header.name() + ": ";
     DiagramGrid grid;
     grid.azimuth = Azimuth::half;
@@ -176,9 +184,7 @@ void save_stack(const std::filesystem::path& path, const StackFile& file) {
     const DiagramGrid& grid = file.diagrams.diagrams[k];
     if (grid.azimuth != Azimuth::half)
       fail(path.string(), "diagram " + std::to_string(k), "a full azimuth", "half, mirrored");
-    std::string number = std::to_string(k);
-    number.insert(0, number.size() < 3 ? 3 - number.size() : 0, '0');
-    Part part = make_part("diagram." + number, static_cast<int>(grid.r.size()), static_cast<int>(grid.phi.size()), {"Y"});
+    Part part = make_part(diagram_name(k), static_cast<int>(grid.r.size()), static_cast<int>(grid.phi.size()), {"Y"});
     part.header.insert("gonio:theta_i", Imf::FloatAttribute(static_cast<float>(file.diagrams.theta_i[k])));
     part.header.insert("gonio:phi", Imf::FloatVectorAttribute(to_float(grid.phi)));
     part.header.insert("gonio:r", Imf::FloatVectorAttribute(to_float(grid.r)));
@@ -248,12 +254,8 @@ StackFile load_stack(const std::filesystem::path& path) {
 }
 
 bool is_exr(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  char magic[4] = {};
-  if (std::filesystem::is_directory(path) || !stream)
-    throw Error(path.string() + ": cannot be read, expected a readable file");
-  stream.read(magic, sizeof(magic));
-  return stream.gcount() == sizeof(magic) && Imf::isImfMagic(magic);
+  const std::string magic = read_bytes(path, 4);
+  return magic.size() == 4 && Imf::isImfMagic(magic.data());
 }
 
 CompactBsdf load_compact(const std::filesystem::path& path) {

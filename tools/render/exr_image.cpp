@@ -8,6 +8,7 @@
 #include <ImfStdIO.h>
 
 #include <cmath>
+#include <utility>
 
 #include <gonio/brdf/exr/check_attributes.h>
 #include <gonio/brdf/exr/stack_file.h>
@@ -22,6 +23,9 @@ constexpr long long max_pixels = 1LL << 28;
 RgbImage load(const std::string& file) {
   check_attribute_sizes(file);
   Imf::InputFile input(file.c_str(), 1);
+  // Files of ours have channels of the same names with another meaning.
+  for (const auto& [attribute, found] : {std::pair{"gonio:format", "a stack file"}, {"gonioLight", "a luminaire"}, {"gonio:quantity", "an image of a normal distribution"}})
+    if (input.header().find(attribute) != input.header().end()) throw Error(file + ": content: found " + found + ", expected a picture");
   const auto& window = input.header().dataWindow();
   const long long width = 1LL + window.max.x - window.min.x, height = 1LL + window.max.y - window.min.y;
   if (width < 1 || height < 1 || width * height > max_pixels)
