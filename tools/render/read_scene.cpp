@@ -44,7 +44,10 @@ class SceneReader {
   }
 
  private:
-  fs::path file(JsonFields& fields) const { return folder_ / fields.text("file"); }
+  fs::path file(JsonFields& fields) {
+    scene_.files.push_back(folder_ / fields.text("file"));
+    return scene_.files.back();
+  }
 
   void camera() {
     JsonFields f = fields_.object("camera");
@@ -69,8 +72,9 @@ class SceneReader {
     RgbImage image;
     std::string name = fields_.where("environment");
     if (f.has("file")) {
-      image = load_rgb(file(f));
-      name = file(f).string();
+      const fs::path path = file(f);
+      image = load_rgb(path);
+      name = path.string();
     } else if (f.has("sky")) {
       JsonFields sky = f.object("sky");
       const glm::vec3 sun = sky.triple("sun");
@@ -217,7 +221,9 @@ Scene read_scene(const fs::path& path, const CellPolicies& policies) {
   } catch (const nlohmann::json::exception& e) {
     throw Error(path.string() + ": found no valid JSON, expected a scene: " + e.what());
   }
-  return make_scene(json, path.string(), path.parent_path(), policies);
+  Scene scene = make_scene(json, path.string(), path.parent_path(), policies);
+  scene.files.push_back(path);
+  return scene;
 }
 
 }  // namespace gonio
