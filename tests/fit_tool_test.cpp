@@ -163,6 +163,21 @@ TEST_F(FitToolTest, WritesATableOfErrors) {
   EXPECT_EQ(rows, 6);
 }
 
+// One bad input costs the others nothing, and is named at the end.
+TEST_F(FitToolTest, GoodInputsSurviveABadOne) {
+  write_table("a.mbsdf", one_lobe);
+  std::ofstream(path("bad.mbsdf")) << read_bytes(path("a.mbsdf")).substr(0, 300);
+  write_table("black.mbsdf", "lambert:albedo=0");  // loads, and cannot be fitted
+  expect_error("fit a.mbsdf bad.mbsdf black.mbsdf none.mbsdf --table e.md", "3 of 4 inputs failed: bad.mbsdf: ");
+  EXPECT_TRUE(contains(read_bytes(path(".err")), "; black.mbsdf: "));
+  EXPECT_TRUE(contains(read_bytes(path(".err")), "none.mbsdf: "));
+  EXPECT_TRUE(contains(read_bytes(path("e.md")), "| a | 1 |"));
+  expect_error("report a.mbsdf bad.mbsdf -o report --grid 6x6 --incident 3", "1 of 2 inputs failed: bad.mbsdf: ");
+  EXPECT_EQ(nlohmann::json::parse(read_bytes(path("report/report.json")))["materials"].size(), 1u);
+  expect_error("report bad.mbsdf none.mbsdf -o none", "2 of 2 inputs failed");
+  EXPECT_FALSE(std::filesystem::exists(path("none")));
+}
+
 TEST_F(FitToolTest, RefusesWhatItCannotDo) {
   write_table("a.mbsdf", one_lobe);
   expect_ok("convert a.mbsdf a.exr --incident 3");

@@ -179,6 +179,25 @@ TEST_F(LightTool, OtherFilesAreNamedAsWhatTheyAre) {
   EXPECT_NE(read("out").find("found a measured BRDF (RGL)"), std::string::npos) << read("out");
 }
 
+TEST_F(LightTool, AnInputIsNeverReplaced) {
+  const std::string before = read("in.ldt");
+  for (const char* name : {"hard.ldt", "hard.svg", "hard.obj", "x.pbrt.exr"}) fs::create_hard_link(folder_ / "in.ldt", folder_ / name);
+  for (const char* arguments : {"convert in.ldt in.ldt", "convert in.ldt hard.ldt", "plot in.ldt hard.svg", "solid in.ldt hard.obj", "convert in.ldt x.pbrt"})
+    refused(std::string("light ") + arguments, "output: found the same file as in.ldt");
+  EXPECT_EQ(read("in.ldt"), before);
+  for (const char* name : {"hard.svg", "hard.obj"}) EXPECT_EQ(read(name), before) << name;
+}
+
+TEST_F(LightTool, OutputsAreNamedAndABadFileStopsNoOther) {
+  ASSERT_EQ(run("light convert in.ldt b.pbrt --resolution 32"), 0) << read("err");
+  EXPECT_EQ(read("out"), "written: b.pbrt\nwritten: b.pbrt.exr\n");
+  ASSERT_EQ(run("light plot in.ldt p.svg"), 0) << read("err");
+  EXPECT_EQ(read("out"), "written: p.svg\n");
+  EXPECT_EQ(run("light info missing.ldt in.ldt"), 1);
+  EXPECT_NE(read("err").find("1 of 2 inputs failed: missing.ldt"), std::string::npos) << read("err");
+  EXPECT_NE(read("out").find("I max"), std::string::npos);
+}
+
 TEST_F(LightTool, RefusesWithOneLine) {
   std::ofstream(folder_ / "bad.ies") << "IESNA91\nTILT=NONE\nfile format error\n";
   refused("light info bad.ies", "line 3: number of lamps");

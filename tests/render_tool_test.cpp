@@ -102,6 +102,12 @@ TEST_F(RenderTool, OutputsThatCannotBeWrittenAreFoundBeforeTheWork) {
   EXPECT_NE(text("err").find("grey.mbsdf: cannot be made a folder"), std::string::npos) << text("err");
 }
 
+TEST_F(RenderTool, AnInputIsNeverReplaced) {
+  std::filesystem::create_hard_link(folder_ / "grey.mbsdf", folder_ / "grey.exr");
+  EXPECT_EQ(run("--material grey.mbsdf --samples 16777216 -o grey.exr"), 1);
+  EXPECT_NE(text("err").find("grey.exr: output: found the same file as grey.mbsdf"), std::string::npos) << text("err");
+}
+
 TEST_F(RenderTool, ErrorsAreOneLineAndLeaveNoFile) {
   test::write_file(folder_ / "s.json", R"({"materials": {}, "objects": []})");
   test::write_file(folder_ / "fit.json", to_json(parse_model("ggx:alpha=0.3+lambert:albedo=0.5")));
@@ -116,6 +122,8 @@ TEST_F(RenderTool, ErrorsAreOneLineAndLeaveNoFile) {
       {"--material fit.json --sampling lobes2", "fit.json: sampling: found lobes2, expected a method for a model file"},
       {"--material grey.mbsdf --exposure nan", "--exposure: found nan"},
       {"--material grey.mbsdf --seconds inf", "--seconds: found inf"},
+      {"--material grey.mbsdf --seconds 0", "--seconds: found 0, expected more than 0"},
+      {"--material grey.mbsdf --seconds 1 --samples 4", "--samples: found one, expected none beside --seconds"},
       {"--material grey.mbsdf --bounces -1", "--bounces: found -1"},
       {"--material grey.mbsdf --threads -1", "--threads: found -1"},
   };

@@ -234,6 +234,40 @@ TEST_F(ToolTest, OutputsThatCannotBeWritten) {
   fs::permissions(path("read_only"), fs::perms::owner_all);
 }
 
+TEST_F(ToolTest, AnInputIsNeverReplaced) {
+  write("a.mbsdf", sample_mbsdf());
+  fs::create_symlink("a.mbsdf", path("soft.mbsdf"));
+  fs::create_hard_link(path("a.mbsdf"), path("hard.mbsdf"));
+  fs::create_symlink("a.mbsdf", path("soft.exr"));
+  for (const std::string out : {"a.mbsdf", "./a.mbsdf", "soft.mbsdf", "hard.mbsdf", "soft.exr"})
+    expect_error("convert a.mbsdf " + out, {out + ": output: found the same file as a.mbsdf"});
+  fs::create_hard_link(path("a.mbsdf"), path("b.json"));
+  expect_error("convert a.mbsdf c.exr --front b.json", {"b.json: output: found the same file as a.mbsdf"});
+  expect_error("convert a.mbsdf c.exr --front c.exr", {"c.exr: output: found the same file as c.exr"});
+  expect_error("synth a.mbsdf -o hard.mbsdf", {"hard.mbsdf: output"});
+  expect_error("fit a.mbsdf -o b.json", {"b.json: output"});
+  fs::create_directory(path("folder"));
+  fs::create_hard_link(path("a.mbsdf"), path("folder/report.json"));
+  fs::create_hard_link(path("a.mbsdf"), path("folder/ndf.exr"));
+  expect_error("report a.mbsdf -o folder", {"folder/report.json: output"});
+  expect_error("report --merge folder/report.json -o folder", {"folder/report.json: output"});
+  expect_error("ndf a.mbsdf -o folder", {"folder/ndf.exr: output"});
+  EXPECT_EQ(read_bytes(path("a.mbsdf")), sample_mbsdf());
+}
+
+TEST_F(ToolTest, OutputsAreNamed) {
+  write("a.mbsdf", sample_mbsdf());
+  for (const std::string name : {"b.mbsdf", "b.exr", "b.bsdf", "b.binary"})
+    EXPECT_TRUE(contains(execute("convert a.mbsdf " + name).out, "written: " + name + "\n")) << name;
+  EXPECT_TRUE(contains(execute("convert b.exr c.exr").out, "written: c.exr\n"));
+  EXPECT_TRUE(contains(execute("synth default -o d.binary").out, "written: d.binary\n"));
+  const std::string out = execute("convert a.mbsdf paper --max-variance 0.1 --front front.json").out;
+  const std::string paper = fs::exists(path("paper.json")) ? "paper.json" : "paper.exr";
+  EXPECT_TRUE(fs::exists(path(paper)));
+  EXPECT_TRUE(contains(out, "written: " + paper + "\nwritten: front.json\n")) << out;
+  EXPECT_TRUE(contains(out, "bytes in memory")) << out;
+}
+
 TEST_F(ToolTest, FailureKeepsTheOldFile) {
   write("bad.mbsdf", sample_mbsdf().substr(0, 200));
   for (const std::string name : {"old.exr", "old.binary", "old.mbsdf"}) {
@@ -250,6 +284,12 @@ TEST_F(ToolTest, StandardOutputThatFails) {
   const int status = std::system(command.c_str());
   EXPECT_TRUE(WIFEXITED(status));
   EXPECT_EQ(WEXITSTATUS(status), 1);
+  for (const std::string verb : {"--help", "--version", "convert --help", "light info --help", "synth --list"}) {
+    const std::string err = path("err").string();
+    const int code = std::system(("'" GONIO_TOOL "' " + verb + " >/dev/full 2>'" + err + "'").c_str());
+    EXPECT_TRUE(WIFEXITED(code) && WEXITSTATUS(code) == 1) << verb;
+    EXPECT_TRUE(contains(read_bytes(err), "standard output: cannot be written\n")) << verb;
+  }
 }
 
 // ---------------------------------------------------------------- info

@@ -3,6 +3,7 @@
 #include <gonio/brdf/write.h>
 #include <gonio/fitting/synth.h>
 #include <gonio/mapping/error.h>
+#include <gonio/tools/check_not_input.h>
 #include <gonio/tools/convert.h>
 #include <gonio/tools/convert_rgl.h>
 #include <gonio/tools/convert_scene.h>
@@ -10,6 +11,7 @@
 #include <gonio/tools/input.h>
 #include <gonio/tools/options.h>
 #include <gonio/tools/progress.h>
+#include <gonio/tools/written.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -121,17 +123,20 @@ void convert(const CLI::App& verb, Options& options) {
   }
   refuse(verb, {"--output"}, "only a scene has it");
   if (options.out.empty()) throw CLI::RequiredError(options.in.empty() ? "IN" : "OUT");
+  check_not_input(options.out, {options.in});
   const bool any_kind = std::filesystem::path(options.out).extension().empty() && options.stack.max_variance;
   const std::string extension =
       any_kind ? "" : checked_extension(options.out, {".exr", ".binary", ".mbsdf", ".bsdf"});
   if (extension == ".bsdf") {
     any_to_rgl(verb, options);
+    print_written(options.out);
     return;
   }
   refuse(verb, {"--rgb"}, "only .bsdf may hold spectra");
   if (extension != ".binary") refuse(verb, {"--phi-d"}, "only MERL has it");
   if (is_exr(options.in)) {
     stack_to_stack(verb, options, extension);
+    print_written(options.out);
     return;
   }
   if (extension == ".exr" || any_kind) {
@@ -152,6 +157,7 @@ void convert(const CLI::App& verb, Options& options) {
   } else {
     table_to_mbsdf(verb, options);
   }
+  print_written(options.out);
 }
 
 }  // namespace

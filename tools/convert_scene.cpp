@@ -3,10 +3,13 @@
 #include <gonio/brdf/split_budget.h>
 #include <gonio/mapping/atomic_file.h>
 #include <gonio/mapping/error.h>
+#include <gonio/tools/check_not_input.h>
 #include <gonio/tools/convert_scene.h>
+#include <gonio/tools/failures.h>
 #include <gonio/tools/input.h>
 #include <gonio/tools/progress.h>
 #include <gonio/tools/scene.h>
+#include <gonio/tools/written.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -99,7 +102,24 @@ void print(const std::vector<SceneMaterial>& scene, const std::vector<Curve>& cu
   std::printf("%-24s %7s %9zu %9s %12.3g %11zu\n", "sum", "1", split.bytes, "", split.variance, even.bytes);
   std::printf("summed variance: %.3g; evenly split: %.3g", split.variance, even.variance);
   if (split.variance > 0) std::printf(", %.2f times that", even.variance / split.variance);
-  std::printf("\n");
+  std::printf("\nbytes are those in memory\n");
+}
+
+/// All inputs load, and none would be replaced: one that fails costs no other its time.
+void check_inputs(const std::filesystem::path& path, const std::vector<SceneMaterial>& scene, const std::filesystem::path& out) {
+  std::vector<std::filesystem::path> inputs{path};
+  std::vector<std::string> outputs{"scene-budget.json"};
+  for (const SceneMaterial& material : scene) {
+    inputs.push_back(material.file);
+    outputs.push_back(material.name + ".exr");
+  }
+  check_not_input(out, outputs, inputs);
+  Failures failures;
+  for (const SceneMaterial& material : scene) {
+    const ProgressLine progress("reading " + material.file.string());
+    failures.survives([&] { load_input(material.file); });
+  }
+  failures.throw_any(scene.size());
 }
 
 }  // namespace
@@ -108,6 +128,7 @@ void convert_scene(const std::filesystem::path& path, std::size_t bytes, const s
   const std::vector<SceneMaterial> scene = load_scene(path);
   if (std::filesystem::exists(out) && !std::filesystem::is_directory(out))
     throw Error(out.string() + ": found a file, expected a folder");
+  check_inputs(path, scene, out);
   std::vector<std::vector<CompactFit>> fits;
   std::vector<Curve> curves;
   std::vector<double> shares;
@@ -146,6 +167,8 @@ void convert_scene(const std::filesystem::path& path, std::size_t bytes, const s
   }
   write_stream_atomically(out / "scene-budget.json", [&](std::ostream& stream) { stream << json.dump(1, ' ', false, ordered_json::error_handler_t::replace) << '\n'; });
   print(scene, curves, split, even);
+  for (const SceneMaterial& material : scene) print_written(out / (material.name + ".exr"));
+  print_written(out / "scene-budget.json");
 }
 
 }  // namespace gonio

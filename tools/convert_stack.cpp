@@ -3,12 +3,14 @@
 #include <gonio/fitting/fit_json.h>
 #include <gonio/mapping/atomic_file.h>
 #include <gonio/mapping/error.h>
+#include <gonio/tools/check_not_input.h>
 #include <gonio/tools/check_writable.h>
 #include <gonio/tools/convert_stack.h>
 #include <gonio/tools/front.h>
 #include <gonio/tools/input.h>
 #include <gonio/tools/number.h>
 #include <gonio/tools/progress.h>
+#include <gonio/tools/written.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -44,6 +46,7 @@ void by_hand(const std::filesystem::path& in, const std::filesystem::path& out, 
   save_stack(out, file);
   std::printf("chart %s, %s, %zu incident angles\n", to_string(file.diagrams.chart), to_string(file.interpolation),
               file.diagrams.theta_i.size());
+  print_written(out);
 }
 
 bool missed(const CompactFit& fit, const CompactOptions& options) {
@@ -54,13 +57,13 @@ bool missed(const CompactFit& fit, const CompactOptions& options) {
 std::string describe(const CompactChoice& choice, const CompactOptions& options) {
   const CompactFit& best = choice.best();
   std::string text = std::string("chart ") + to_string(best.diagrams.chart) + ", " + std::to_string(best.diagrams.theta_i.size()) +
-                     " incident angles, " + std::to_string(best.bytes) + " bytes: relvar at most " +
+                     " incident angles, " + std::to_string(best.bytes) + " bytes in memory: relvar at most " +
                      number(best.quality.worst_relvar, 2) + " up to 80 degrees, evaluation error " +
                      number(100 * best.quality.eval_error, 2) + " %, albedo within " + number(100 * best.quality.albedo_error, 2) + " %\n";
   for (std::size_t k = 0; k < choice.tried.size(); ++k) {
     const CompactFit& other = choice.tried[k];
     if (k != choice.chosen)
-      text += std::string("  not ") + to_string(other.diagrams.chart) + ", " + std::to_string(other.bytes) + " bytes: relvar " +
+      text += std::string("  not ") + to_string(other.diagrams.chart) + ", " + std::to_string(other.bytes) + " bytes in memory: relvar " +
               number(other.quality.worst_relvar, 2) + ", evaluation error " + number(100 * other.quality.eval_error, 2) + " %\n";
   }
   if (missed(best, options)) text += "  a relvar of " + number(*options.max_variance, 2) + " was not reached within the budget\n";
@@ -84,17 +87,23 @@ LobeChoice smallest_lobes(const std::shared_ptr<const BrdfTable>& table, const T
 
 void sized(const std::filesystem::path& in, const std::filesystem::path& out, const StackRequest& request,
            const CellPolicies& policies) {
-  const auto table = std::make_shared<const BrdfTable>(load_input(in, policies));
   const bool any_kind = out.extension().empty();
+  std::filesystem::path file = out, stack_file = out;
+  if (any_kind) file += ".json", stack_file += ".exr";  // one of the two
+  check_not_input(file, {in});
+  check_not_input(stack_file, {in});
+  const auto table = std::make_shared<const BrdfTable>(load_input(in, policies));
+  check_writable(file);
+  if (!request.front.empty()) {
+    check_not_input(request.front, {in, file, stack_file});
+    check_writable(request.front);
+  }
+
   CompactOptions options;
   if (request.budget) options.budget = *request.budget, options.max_variance.reset();
   if (request.max_variance) options.max_variance = request.max_variance;
   options.candidates = request.charts;
 
-  std::filesystem::path file = out;
-  if (any_kind) file += ".json";  // or .exr, beside it
-  check_writable(file);
-  if (!request.front.empty()) check_writable(request.front);
 
   std::vector<FrontPoint> points;
   TableFits fits;
@@ -119,11 +128,11 @@ void sized(const std::filesystem::path& in, const std::filesystem::path& out, co
     FrontPoint& p = points[lobes.point];
     p.chosen = true;
     write_stream_atomically(file, [&](std::ostream& stream) { stream << to_json(lobes.fit->fit, lobes.fit->errors); });
-    std::printf("%s: %s, %zu bytes adapted to the table: relvar at most %s up to 80 degrees; a stack takes %zu bytes for %s\n",
-                file.string().c_str(), p.id.c_str(), p.bytes, number(p.relvar, 2).c_str(), best.bytes,
+    std::printf("%s, %zu bytes in memory adapted to the table: relvar at most %s up to 80 degrees; a stack takes %zu bytes in memory for %s\n",
+                p.id.c_str(), p.bytes, number(p.relvar, 2).c_str(), best.bytes,
                 number(best.quality.worst_relvar, 2).c_str());
   } else {
-    if (any_kind) file.replace_extension(".exr");
+    file = stack_file;
     StackFile stack = named(*table, in);
     stack.diagrams = best.diagrams;
     stack.colour = best.colour;
@@ -139,6 +148,8 @@ void sized(const std::filesystem::path& in, const std::filesystem::path& out, co
     }
     write_stream_atomically(request.front, [&](std::ostream& stream) { stream << front_json(points).dump(1, ' ', false, nlohmann::json::error_handler_t::replace) << '\n'; });
   }
+  print_written(file);
+  if (!request.front.empty()) print_written(request.front);
 }
 
 }  // namespace

@@ -2,12 +2,16 @@
 #include <gonio/fitting/fit_json.h>
 #include <gonio/mapping/atomic_file.h>
 #include <gonio/mapping/error.h>
+#include <gonio/tools/check_not_input.h>
+#include <gonio/tools/check_writable.h>
+#include <gonio/tools/failures.h>
 #include <gonio/tools/fit.h>
 #include <gonio/tools/input.h>
 #include <gonio/tools/number.h>
 #include <gonio/tools/options.h>
 #include <gonio/tools/progress.h>
 #include <gonio/tools/table_fits.h>
+#include <gonio/tools/written.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -42,18 +46,27 @@ const char* to_text(Compression compression) noexcept {
   }
 }
 
-TableFits fit_file(const Options& options, const std::string& input) {
+BrdfTable load(const Options& options, const std::string& input) {
   if (is_exr(input)) {
     throw Error(input + ": format: found a stack file, expected a table (MERL, RGL or MBSDF)");
   }
+  return load_input(input, options.policies);
+}
+
+TableFits fit_file(const Options& options, const std::string& input) {
   const ProgressLine progress("fitting " + input);
-  const BrdfTable table = load_input(input, options.policies);
+  const BrdfTable table = load(options, input);
   const LobeModel form = parse_model(options.model == "auto" ? default_fit_form : options.model);
   try {
     return fit_table(table, form, options.fit);
   } catch (const Error& error) {
     throw Error(input + ": " + error.what());
   }
+}
+
+void check_output(const std::string& output, const std::vector<std::string>& inputs) {
+  check_not_input(output, {inputs.begin(), inputs.end()});
+  check_writable(output);
 }
 
 /// A dash where nothing was measured.
@@ -86,7 +99,10 @@ void print_fit(const Options& options, const StageFit& stage, double seconds) {
 }
 
 void fit_one(const Options& options) {
-  if (!options.out.empty()) checked_extension(options.out, {".json"});
+  if (!options.out.empty()) {
+    checked_extension(options.out, {".json"});
+    check_output(options.out, options.inputs);
+  }
   const TableFits fits = fit_file(options, options.inputs.front());
   std::size_t chosen = fits.stages.size() - 1;
   if (options.model == "auto") {
@@ -114,7 +130,7 @@ void fit_one(const Options& options) {
   if (options.out.empty()) return;
   const std::string json = to_json(stage.fit, stage.errors);
   write_stream_atomically(options.out, [&](std::ostream& out) { out << json; });
-  std::printf("written: %s\n", options.out.c_str());
+  print_written(options.out);
 }
 
 void write_rows(std::ostream& out, const TableFits& fits) {
@@ -132,8 +148,21 @@ void write_rows(std::ostream& out, const TableFits& fits) {
   }
 }
 
+/// Those that load: a fit takes long, and is not begun before all are known.
+std::vector<std::string> usable_inputs(const Options& options, Failures& failures) {
+  std::vector<std::string> usable;
+  for (const std::string& input : options.inputs) {
+    const ProgressLine progress("reading " + input);
+    if (failures.survives([&] { load(options, input); })) usable.push_back(input);
+  }
+  return usable;
+}
+
 void fit_to_table(const Options& options) {
   checked_extension(options.table, {".md"});
+  check_output(options.table, options.inputs);
+  Failures failures;
+  const std::vector<std::string> inputs = usable_inputs(options, failures);
   std::ostringstream text;
   text << "# Errors of fitted lobes\n\nModel `"
        << (options.model == "auto" ? default_fit_form : options.model)
@@ -147,16 +176,21 @@ void fit_to_table(const Options& options) {
           "| L1 beyond | albedo beyond | ΔE beyond | cost | termination | s |\n|";
   for (int k = 0; k < 15; ++k) text << "---|";
   text << '\n';
-  for (const std::string& input : options.inputs) {
-    const TableFits fits = fit_file(options, input);
+  std::size_t fitted = 0;
+  for (const std::string& input : inputs) {
+    TableFits fits;
+    if (!failures.survives([&] { fits = fit_file(options, input); })) continue;
+    ++fitted;
     write_rows(text, fits);
     std::printf("%s: relative L1", input.c_str());
     for (const StageFit& s : fits.stages) std::printf(" %.3g", s.errors.inside.relative_l1);
     std::printf(", %.1f s\n", fits.seconds);
     std::fflush(stdout);
   }
+  if (fitted == 0) failures.throw_any(options.inputs.size());
   write_stream_atomically(options.table, [&](std::ostream& out) { out << text.str(); });
-  std::printf("written: %s\n", options.table.c_str());
+  print_written(options.table);
+  failures.throw_any(options.inputs.size());
 }
 
 void fit_verb(Options& options) {

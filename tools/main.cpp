@@ -15,6 +15,7 @@
 #include <cctype>
 #include <cstdio>
 #include <exception>
+#include <iostream>
 #include <new>
 #include <string>
 
@@ -41,6 +42,23 @@ std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
          ", expected one of " + verbs + "; see --help";
 }
 
+/// What could not be written is an error even where no one looks at each write, as in --help.
+void flush_output() {
+  std::cout.flush();
+  if (!std::cout || std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw gonio::Error("standard output: cannot be written");
+}
+
+/// Runs the verb, or prints help or the version.
+void run(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() != 0) throw;
+    app.exit(error);  // --help, --version
+  }
+  flush_output();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -62,13 +80,9 @@ int main(int argc, char** argv) {
   gonio::add_render(app);
   gonio::add_compare(app);
   try {
-    app.parse(argc, argv);
-    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-      throw gonio::Error("standard output: cannot be written");
-    }
+    run(app, argc, argv);
     return 0;
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     return fail(app, usage_error(app, error));
   } catch (const std::bad_alloc&) {
     return fail(app, "not enough memory");

@@ -6,6 +6,7 @@
 #include <gonio/brdf/ndf/radial_ndf.h>
 #include <gonio/brdf/ndf/shadowing.h>
 #include <gonio/mapping/error.h>
+#include <gonio/tools/check_not_input.h>
 #include <gonio/tools/input.h>
 #include <gonio/tools/ndf/picture.h>
 #include <gonio/tools/ndf/profile.h>
@@ -189,6 +190,7 @@ void write_markdown(std::ostream& out, const nlohmann::json& j, const std::strin
 void ndf(const Options& options) {
   if (options.size < 16 || options.size > 4096)
     throw Error("--size: found " + std::to_string(options.size) + ", expected 16 to 4096");
+  check_not_input(options.out, {"ndf.exr", "g1.exr", "ndf.svg", "g1.svg", "profile.svg", "ndf.json", "ndf.md"}, {options.in});
   Source source = [&] {
     const ProgressLine line("reading " + options.in);
     return read(options);
@@ -230,7 +232,7 @@ void ndf(const Options& options) {
   write_stream_atomically(options.out / "ndf.md", [&](std::ostream& out) { write_markdown(out, json, source.name); });
   std::cout << "projected area " << number(json["projected_area_before"], 4) << ", normalised " << number(json["projected_area_after"], 4)
             << "; G1 of all directions in " << number(json["seconds"]["g1"], 4) << " s\n"
-            << "written: " << (options.out / "ndf.md").string() << ", ndf.json, ndf.exr, g1.exr and pictures\n";
+            << "written: " << (options.out / "ndf.md").string() << ", ndf.json, ndf.exr, g1.exr, ndf.svg, g1.svg" << (source.profiles.empty() ? "" : ", profile.svg") << '\n';
 }
 
 }  // namespace

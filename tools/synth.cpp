@@ -1,8 +1,10 @@
 #include <gonio/fitting/synth.h>
 #include <gonio/mapping/error.h>
+#include <gonio/tools/check_not_input.h>
 #include <gonio/tools/options.h>
 #include <gonio/tools/progress.h>
 #include <gonio/tools/synth.h>
+#include <gonio/tools/written.h>
 
 #include <cmath>
 #include <cstdio>
@@ -59,6 +61,7 @@ void synth(Options& options) {
   if (options.out.empty())
     throw Error("-o: found no output file, expected a .binary or .mbsdf file");
   const std::string extension = checked_extension(options.out, {".binary", ".mbsdf"});
+  check_not_input(options.out, {options.model});
   const double sigma = options.synth.noise_sigma, limit = options.measured_to_degrees;
   if (!(sigma >= 0 && std::isfinite(sigma))) {
     throw Error("--noise: found " + std::to_string(sigma) + ", expected a number from 0");
@@ -75,6 +78,7 @@ void synth(Options& options) {
   } else {
     write_mbsdf(options.out, synthesize_grid(model, 90, 180, options.synth));
   }
+  print_written(options.out);
 }
 
 }  // namespace

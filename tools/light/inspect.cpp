@@ -1,6 +1,7 @@
 #include <gonio/mapping/error.h>
 #include <gonio/mapping/light/photometry.h>
 #include <gonio/mapping/light/text_scanner.h>
+#include <gonio/tools/failures.h>
 #include <gonio/tools/light/command.h>
 
 #include <cmath>
@@ -13,61 +14,65 @@ constexpr double degree = pi<double> / 180;
 
 std::string shown(const std::string& text) { return text.empty() ? "-" : text; }
 
+void print_light(const std::string& file, const LightCommand& o) {
+  Deviations deviations;
+  const Luminaire light = load_as_is(file, o, deviations);
+  const Photometry p = photometry(light.diagram);
+  const auto line = [](const char* name, const std::string& value) {
+    std::printf("  %-16s %s\n", name, value.c_str());
+  };
+  const auto text = [](const char* format, auto... values) {
+    char buffer[200];
+    std::snprintf(buffer, sizeof buffer, format, values...);
+    return std::string(buffer);
+  };
+  const std::string total = flux_unit(light);
+  std::printf("%s\n", file.c_str());
+  line("format", light.format);
+  line("manufacturer", shown(light.manufacturer));
+  line("luminaire", shown(light.name));
+  line("lamp", shown(light.lamp));
+  line("unit", light.unit);
+  line("angles", text("%zu C planes, %zu gamma, symmetry: ", light.diagram.c.size() - 1,
+                      light.diagram.gamma.size()) +
+                     to_string(light.symmetry));
+  line("flux",
+       format_quantity(p.flux) + " " + total +
+           text(", %.1f %% of it down", p.flux > 0 ? 100 * p.downward_flux / p.flux : 0.0));
+  if (light.stated_lumens)
+    line("stated flux", format_quantity(*light.stated_lumens) + " " + total +
+                            text(" (%+.2f %%)", 100 * (p.flux / *light.stated_lumens - 1)));
+  if (light.lamp_lumens)
+    line("lamps", format_quantity(*light.lamp_lumens) + " " + total +
+                      (light.absolute ? ", absolute photometry" : ""));
+  if (const auto ratio = light_output_ratio(light))
+    line("output ratio", text("%.2f %%", 100 * *ratio));
+  if (const auto e = efficacy(light))  // of radiometric files the efficiency
+    line("efficacy", format_quantity(*e) + " " + total + text("/W at %.4g W", light.watts));
+  line("I max",
+       format_quantity(p.max_cd) + " " + light.unit +
+           text(" at C %.4g, gamma %.4g degrees", p.max_at.c / degree, p.max_at.gamma / degree));
+  line("beam angle", text("%.1f degrees in C0-C180, %.1f in C90-C270", p.c0.beam / degree,
+                          p.c90.beam / degree));
+  line("field angle", text("%.1f degrees in C0-C180, %.1f in C90-C270", p.c0.field / degree,
+                           p.c90.field / degree));
+  std::string zones;
+  for (double z : p.zones)  // less is rounding
+    zones += text("%.4g ", z > 1e-9 * p.flux ? z : 0.0);
+  line(total == "lm" ? "zonal lumens" : "zonal flux",
+       zones + total + ", every 10 degrees from the nadir");
+  if (!deviations.empty())
+    line("deviations", text("%zu, see gonio light validate", deviations.size()));
+  if (!light.other_zero.empty())
+    line("hint", light.other_zero + ": if C0 is the file's 0-degree plane, use --ies-zero 0");
+}
+
 }  // namespace
 
 void light_info(const LightCommand& o) {
-  for (const std::string& file : o.files) {
-    Deviations deviations;
-    const Luminaire light = load_as_is(file, o, deviations);
-    const Photometry p = photometry(light.diagram);
-    const auto line = [](const char* name, const std::string& value) {
-      std::printf("  %-16s %s\n", name, value.c_str());
-    };
-    const auto text = [](const char* format, auto... values) {
-      char buffer[200];
-      std::snprintf(buffer, sizeof buffer, format, values...);
-      return std::string(buffer);
-    };
-    const std::string total = flux_unit(light);
-    std::printf("%s\n", file.c_str());
-    line("format", light.format);
-    line("manufacturer", shown(light.manufacturer));
-    line("luminaire", shown(light.name));
-    line("lamp", shown(light.lamp));
-    line("unit", light.unit);
-    line("angles", text("%zu C planes, %zu gamma, symmetry: ", light.diagram.c.size() - 1,
-                        light.diagram.gamma.size()) +
-                       to_string(light.symmetry));
-    line("flux",
-         format_quantity(p.flux) + " " + total +
-             text(", %.1f %% of it down", p.flux > 0 ? 100 * p.downward_flux / p.flux : 0.0));
-    if (light.stated_lumens)
-      line("stated flux", format_quantity(*light.stated_lumens) + " " + total +
-                              text(" (%+.2f %%)", 100 * (p.flux / *light.stated_lumens - 1)));
-    if (light.lamp_lumens)
-      line("lamps", format_quantity(*light.lamp_lumens) + " " + total +
-                        (light.absolute ? ", absolute photometry" : ""));
-    if (const auto ratio = light_output_ratio(light))
-      line("output ratio", text("%.2f %%", 100 * *ratio));
-    if (const auto e = efficacy(light))  // of radiometric files the efficiency
-      line("efficacy", format_quantity(*e) + " " + total + text("/W at %.4g W", light.watts));
-    line("I max",
-         format_quantity(p.max_cd) + " " + light.unit +
-             text(" at C %.4g, gamma %.4g degrees", p.max_at.c / degree, p.max_at.gamma / degree));
-    line("beam angle", text("%.1f degrees in C0-C180, %.1f in C90-C270", p.c0.beam / degree,
-                            p.c90.beam / degree));
-    line("field angle", text("%.1f degrees in C0-C180, %.1f in C90-C270", p.c0.field / degree,
-                             p.c90.field / degree));
-    std::string zones;
-    for (double z : p.zones)  // less is rounding
-      zones += text("%.4g ", z > 1e-9 * p.flux ? z : 0.0);
-    line(total == "lm" ? "zonal lumens" : "zonal flux",
-         zones + total + ", every 10 degrees from the nadir");
-    if (!deviations.empty())
-      line("deviations", text("%zu, see gonio light validate", deviations.size()));
-    if (!light.other_zero.empty())
-      line("hint", light.other_zero + ": if C0 is the file's 0-degree plane, use --ies-zero 0");
-  }
+  Failures failures;
+  for (const std::string& file : o.files) failures.survives([&] { print_light(file, o); });
+  failures.throw_any(o.files.size());
 }
 
 void light_validate(const LightCommand& o) {

@@ -5,10 +5,12 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <gonio/mapping/error.h>
 #include <gonio/tools/progress.h>
+#include <gonio/tools/check_not_input.h>
 #include <gonio/tools/check_writable.h>
 #include <gonio/tools/render/compare_runs.h>
 #include <gonio/tools/render/load_scene.h>
@@ -21,7 +23,7 @@ struct Options {
   SceneChoice choice;
   std::vector<std::string> methods;
   std::filesystem::path out;
-  double reference_seconds = 0;
+  std::optional<double> reference_seconds;
   CompareOptions compare;
 };
 
@@ -53,16 +55,17 @@ std::vector<SamplingMethod> parse_methods(const std::vector<std::string>& names,
 void compare(Options& options) {
   CompareOptions& o = options.compare;
   if (!(o.seconds > 0 && o.seconds <= 1e9)) throw Error("--seconds: found " + std::to_string(o.seconds) + ", expected more than 0, to 1e9");
-  if (!(options.reference_seconds >= 0 && options.reference_seconds <= 1e9))
-    throw Error("--reference-seconds: found " + std::to_string(options.reference_seconds) + ", expected 0 to 1e9");
+  o.reference_seconds = options.reference_seconds.value_or(16 * o.seconds);
+  if (!(o.reference_seconds > 0 && (!options.reference_seconds || o.reference_seconds <= 1e9)))
+    throw Error("--reference-seconds: found " + std::to_string(o.reference_seconds) + ", expected more than 0, to 1e9");
   check_render_options(o.render);
-  o.reference_seconds = options.reference_seconds > 0 ? options.reference_seconds : 16 * o.seconds;
   const std::string name = std::filesystem::path(options.choice.scene.empty() ? options.choice.material : options.choice.scene).stem().string();
   Comparison comparison;
   {
     ProgressLine line("rendering " + name);
     const Scene scene = options.choice.load();
     o.methods = parse_methods(options.methods, scene);
+    check_not_input(options.out, {"compare.html", "compare.md", "compare.json"}, scene.files);
     make_folder(options.out);
     comparison = compare_methods(scene, o, [&](double share) { line.update(share); });
   }

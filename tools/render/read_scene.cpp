@@ -44,7 +44,10 @@ class SceneReader {
   }
 
  private:
-  fs::path file(JsonFields& fields) const { return folder_ / fields.text("file"); }
+  fs::path file(JsonFields& fields) {
+    scene_.files.push_back(folder_ / fields.text("file"));
+    return scene_.files.back();
+  }
 
   void camera() {
     JsonFields f = fields_.object("camera", {"position", "target", "up", "vertical_fov", "resolution"});
@@ -70,8 +73,9 @@ class SceneReader {
     const int kinds = f.has("file") + f.has("sky") + f.has("constant");
     if (kinds != 1) f.fail("file", kinds == 0 ? "none" : "another as well", "one of file, sky and constant");
     if (f.has("file")) {
-      image = load_rgb(file(f));
-      name = file(f).string();
+      const fs::path path = file(f);
+      image = load_rgb(path);
+      name = path.string();
     } else if (f.has("sky")) {
       JsonFields sky = f.object("sky", {"sun", "radius", "radiance"});
       const glm::vec3 sun = sky.triple("sun");
@@ -207,7 +211,9 @@ Scene make_scene(const nlohmann::json& json, const std::string& where, const fs:
 }
 
 Scene read_scene(const fs::path& path, const CellPolicies& policies) {
-  return make_scene(parse_json(read_bytes(path), path.string()), path.string(), path.parent_path(), policies);
+  Scene scene = make_scene(parse_json(read_bytes(path), path.string()), path.string(), path.parent_path(), policies);
+  scene.files.push_back(path);
+  return scene;
 }
 
 }  // namespace gonio

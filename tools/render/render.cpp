@@ -5,16 +5,20 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <gonio/mapping/atomic_file.h>
 #include <gonio/mapping/error.h>
+#include <gonio/tools/number.h>
 #include <gonio/tools/options.h>
 #include <gonio/tools/progress.h>
+#include <gonio/tools/check_not_input.h>
 #include <gonio/tools/check_writable.h>
 #include <gonio/tools/render/film.h>
 #include <gonio/tools/render/load_scene.h>
 #include <gonio/tools/render/tone_map.h>
+#include <gonio/tools/written.h>
 
 namespace gonio {
 namespace {
@@ -26,7 +30,7 @@ struct Options {
   std::string sampling;
   fs::path out = "render.exr";
   int samples = 64;
-  double seconds = 0;
+  std::optional<double> seconds;  // in place of samples
   float exposure = 1;
   RenderOptions render;
 };
@@ -62,10 +66,11 @@ void save(const Options& options, const std::string& extension, const Film& film
   save_layers(options.out, {{"", rgb, &radiance}, {"albedo.", rgb, &albedo}, {"normal.", {"X", "Y", "Z"}, &normal}, {"variance.", rgb, &variance}});
 }
 
-void render(const Options& options) {
+void render(const CLI::App& verb, const Options& options) {
   const std::string extension = checked_extension(options.out, {".exr", ".png"});
   if (options.samples < 1 || options.samples > (1 << 24)) throw Error("--samples: found " + std::to_string(options.samples) + ", expected 1 to 16777216");
-  if (!(options.seconds >= 0 && options.seconds <= 1e9)) throw Error("--seconds: found " + std::to_string(options.seconds) + ", expected 0 to 1e9");
+  if (options.seconds && verb.count("--samples") > 0) throw Error("--samples: found one, expected none beside --seconds, which takes as many as fit");
+  if (options.seconds && !(*options.seconds > 0 && *options.seconds <= 1e9)) throw Error("--seconds: found " + number(*options.seconds) + ", expected more than 0, to 1e9");
   if (!(options.exposure > 0 && options.exposure <= 1e9f)) throw Error("--exposure: found " + std::to_string(options.exposure) + ", expected more than 0, to 1e9");
   check_render_options(options.render);
   check_writable(options.out);
@@ -74,6 +79,7 @@ void render(const Options& options) {
     const ProgressLine line("reading the scene");
     return load(options);
   }();
+  check_not_input(options.out, scene.files);
   {
     ProgressLine line("building the samplers");
     build_materials(scene, [&](double share) { line.update(share); });
@@ -83,11 +89,11 @@ void render(const Options& options) {
   const Clock clock;
   {
     ProgressLine line("rendering " + options.out.string());
-    if (options.seconds > 0) {
+    if (options.seconds) {
       // One sample at a time: the time that one takes tells whether another fits.
-      while (film.samples() == 0 || clock.seconds() * (film.samples() + 1) / film.samples() <= options.seconds) {
+      while (film.samples() == 0 || clock.seconds() * (film.samples() + 1) / film.samples() <= *options.seconds) {
         film.add_samples(1);
-        line.update(clock.seconds() / options.seconds);
+        line.update(clock.seconds() / *options.seconds);
       }
     } else {
       film.add_samples(options.samples, [&](double share) { line.update(share); });
@@ -96,6 +102,7 @@ void render(const Options& options) {
   save(options, extension, film);
   std::printf("%d x %d pixels, %d samples each: %.1f s, after %.1f s for scene and samplers\n", scene.camera.width, scene.camera.height, film.samples(),
               clock.seconds(), prepared);
+  print_written(options.out);
 }
 
 }  // namespace
@@ -106,7 +113,7 @@ void add_render(CLI::App& app) {
   add_scene_choice(*verb, options->choice);
   verb->add_option("-o,--output", options->out, "OpenEXR image with albedo, normal and variance, or tone-mapped .png")->capture_default_str();
   verb->add_option("--samples", options->samples, "Paths a pixel")->capture_default_str();
-  verb->add_option("--seconds", options->seconds, "Time for rendering, instead of a number of samples");
+  verb->add_option("--seconds", options->seconds, "Time for rendering, more than 0, instead of --samples: as many as fit, at least one");
   verb->add_option("--sampling", options->sampling, "Sampling method of all tables, instead of the scene's: " + sampling_method_names());
   verb->add_option("--exposure", options->exposure, "Factor of radiances in a .png")->capture_default_str();
   add_render_options(*verb, options->render);
@@ -115,7 +122,7 @@ void add_render(CLI::App& app) {
       "  gonio render --material satin.bsdf -o satin.png\n"
       "  gonio render --material satin.bsdf --sampling cosine -o noisy.png\n"
       "  gonio render scene.json -o picture.exr --samples 1024");
-  verb->callback([options] { render(*options); });
+  verb->callback([options, verb] { render(*verb, *options); });
 }
 
 }  // namespace gonio

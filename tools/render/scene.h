@@ -2,6 +2,7 @@
 
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -54,6 +55,7 @@ struct Scene {
   std::vector<Object> objects;
   std::shared_ptr<const Environment> environment;  ///< null: black
   std::vector<GoniometricLight> lights;
+  std::vector<std::filesystem::path> files;  ///< that it was read from
 };
 
 /// Makes the samplers of the materials that have tables.

@@ -49,7 +49,7 @@ std::string kib(std::size_t bytes) { return number(static_cast<double>(bytes) / 
 void write_overview(std::ostream& out, const Report& report) {
   if (report.materials.empty()) return;
   out << "\nEfficiency is 1 / (ns of a sample × (mean relvar from 2° to 70° + 0.001)).\n\n"
-         "| material | most efficient | sample ns | mean relvar | efficiency | worst weight | bytes |\n|---|---|---|---|---|---|---|\n";
+         "| material | most efficient | sample ns | mean relvar | efficiency | worst weight | memory |\n|---|---|---|---|---|---|---|\n";
   for (const MaterialReport& material : report.materials) {
     const MethodReport* best = best_method(material);
     if (!best) continue;
@@ -69,8 +69,8 @@ void write_markdown(std::ostream& out, const Report& report) {
       << number(report_significance(report), 2) << " (0.01 for the whole report, Sidak) says that draws do not follow the pdf.\n";
   write_overview(out, report);
   for (const MaterialReport& material : report.materials) {
-    out << "\n## " << material.name << "\n\n" << material.format << ", " << kib(material.source_bytes) << ", `" << material.source << "`, SHA-256 `" << material.sha256 << "`\n\n**" << verdict(material) << "**\n\n![grid](" << material.name << ".svg)\n\n"
-        << "| method | chart | bytes | build s | sample ns | pdf ns | eval ns | in batches: sample ns | pdf ns | eval ns | efficiency |";
+    out << "\n## " << material.name << "\n\n" << material.format << ", " << kib(material.source_bytes) << " on disk, `" << material.source << "`, SHA-256 `" << material.sha256 << "`\n\n**" << verdict(material) << "**\n\n![grid](" << material.name << ".svg)\n\n"
+        << "| method | chart | memory | build s | sample ns | pdf ns | eval ns | in batches: sample ns | pdf ns | eval ns | efficiency |";
     for (const double angle : report_angles) out << " relvar " << angle << "° |";
     out << "\n|---|---|---|---|---|---|---|---|---|---|---|";
     for (std::size_t k = 0; k < std::size(report_angles); ++k) out << "---|";
@@ -94,7 +94,7 @@ void write_markdown(std::ostream& out, const Report& report) {
           << m.coherence.tears + m.coherence.folds << " | " << number(m.convergence.qmc_slope, 2) << " | "
           << number(m.convergence.mc_slope, 2) << " |\n";
     if (!material.front.empty()) {
-      out << "\nWhat memory buys (lobes draw for the table, compact BSDFs need none):\n\n| form | bytes | ns | relvar | evaluation error | kept |\n|---|---|---|---|---|---|\n";
+      out << "\nWhat memory buys (lobes draw for the table, compact BSDFs need none):\n\n| form | memory | ns | relvar | evaluation error | kept |\n|---|---|---|---|---|---|\n";
       for (const nlohmann::json& point : material.front) {
         out << "| " << point["id"].get<std::string>() << " | " << kib(point["bytes"]);
         for (const char* key : {"ns", "relvar", "eval_error"}) out << " | " << number(point[key]);
@@ -207,7 +207,7 @@ void write_report(const std::filesystem::path& directory, const Report& report) 
 void print_summary(std::ostream& out, const Report& report) {
   const auto cell = [&](const std::string& text, int width) -> std::ostream& { return out << std::setw(width) << text; };
   out << std::left << std::setw(28) << "material" << std::setw(20) << "method" << std::setw(10) << "chart" << std::right;
-  for (const char* head : {"KiB", "sample ns", "pdf ns"}) cell(head, 11);
+  for (const char* head : {"KiB memory", "sample ns", "pdf ns"}) cell(head, 11);
   for (const double angle : report_angles) cell("rv " + number(angle) + "°", 10);  // the degree sign is two bytes
   out << '\n';
   for (const MaterialReport& material : report.materials) {
