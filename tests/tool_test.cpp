@@ -224,7 +224,8 @@ TEST_F(ToolTest, OutputsThatCannotBeWritten) {
                {"missing/b.exr: folder: found none, expected missing"});
   expect_error("convert a.mbsdf missing/b.binary", {"missing/b.binary: folder"});
   expect_error("convert a.mbsdf a.mbsdf/b.exr", {"a.mbsdf/b.exr: folder"});
-  expect_error("convert a.mbsdf folder.exr", {"folder.exr"});
+  expect_ok("convert a.mbsdf folder.exr --incident 3 --grid 5x6");  // into the folder
+  EXPECT_TRUE(fs::is_regular_file(path("folder.exr/a.exr")));
   for (const std::string name : {"b.exr", "b.binary", "b.mbsdf"}) {
     expect_error("convert a.mbsdf " + read_only + name, {read_only + name});
   }
@@ -233,6 +234,40 @@ TEST_F(ToolTest, OutputsThatCannotBeWritten) {
   expect_error("synth default -o b.exr",
                {"b.exr: extension: found .exr, expected one of .binary, .mbsdf"});
   fs::permissions(path("read_only"), fs::perms::owner_all);
+}
+
+TEST_F(ToolTest, ConvertEachIntoAFolder) {
+  write("a.mbsdf", sample_mbsdf());
+  write("bad.mbsdf", sample_mbsdf().substr(0, 200));
+  write("c.bsdf", sample_rgl());
+  fs::create_directories(path("d"));
+  fs::create_directories(path("out/d.x"));
+  write("d/a.mbsdf", sample_mbsdf());
+  expect_error("convert a.mbsdf c.bsdf d/a.mbsdf out", {"d/a.mbsdf: would become out/a.exr, as a.mbsdf does"});
+  expect_error("convert a.mbsdf c.bsdf none/", {"none/: no such folder"});
+  expect_error("convert a.mbsdf none/", {"none/: no such folder"});
+  expect_error("convert a.mbsdf c.bsdf b.exr", {"b.exr: no such folder"});
+  expect_error("convert a.mbsdf bad.mbsdf a.mbsdf", {"a.mbsdf: no such folder"});
+  expect_error("convert a.mbsdf b.exr --format exr", {"--format", "the extension of OUT"});
+  expect_error("convert a.mbsdf c.bsdf out --format png", {"--format", "png"});
+  expect_error("convert a.mbsdf c.bsdf out --front f.json", {"--front"});
+
+  const Outcome run = execute("convert a.mbsdf bad.mbsdf c.bsdf none.mbsdf out/ --incident 3 --grid 5x6");
+  EXPECT_EQ(run.code, 1);
+  ASSERT_EQ(run.errors.size(), 1u);
+  EXPECT_TRUE(contains(run.errors[0], "gonio convert: 2 of 4 files failed: bad.mbsdf: ")) << run.errors[0];
+  EXPECT_TRUE(contains(run.errors[0], "; none.mbsdf: ")) << run.errors[0];
+  EXPECT_TRUE(contains(run.out, "a.mbsdf -> out/a.exr\n")) << run.out;
+  EXPECT_FALSE(contains(run.out, "bad")) << run.out;
+  expect_ok("convert a.mbsdf b.exr --incident 3 --grid 5x6");
+  EXPECT_EQ(load_stack(path("out/a.exr")).diagrams.diagrams[1].density, load_stack(path("b.exr")).diagrams.diagrams[1].density);
+  EXPECT_EQ(load_stack(path("out/c.exr")).source, "c.bsdf");
+  EXPECT_FALSE(fs::exists(path("out/bad.exr")));
+
+  expect_ok("convert a.mbsdf c.bsdf out/d.x --format mbsdf --grid 4x8");
+  EXPECT_TRUE(contains(execute("info out/d.x/c.mbsdf").out, "4 x 4 x 8 cells"));
+  expect_ok("convert a.mbsdf out/d.x --format binary");  // one is enough
+  EXPECT_TRUE(fs::exists(path("out/d.x/a.binary")));
 }
 
 TEST_F(ToolTest, FailureKeepsTheOldFile) {
