@@ -15,6 +15,7 @@
 #include <fstream>
 #include <glm/common.hpp>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 namespace gonio {
@@ -223,7 +224,8 @@ TEST_F(ToolTest, OutputsThatCannotBeWritten) {
                {"missing/b.exr: folder: found none, expected missing"});
   expect_error("convert a.mbsdf missing/b.binary", {"missing/b.binary: folder"});
   expect_error("convert a.mbsdf a.mbsdf/b.exr", {"a.mbsdf/b.exr: folder"});
-  expect_error("convert a.mbsdf folder.exr", {"folder.exr"});
+  expect_ok("convert a.mbsdf folder.exr --incident 3 --grid 5x6");  // into the folder
+  EXPECT_TRUE(fs::is_regular_file(path("folder.exr/a.exr")));
   for (const std::string name : {"b.exr", "b.binary", "b.mbsdf"}) {
     expect_error("convert a.mbsdf " + read_only + name, {read_only + name});
   }
@@ -266,6 +268,40 @@ TEST_F(ToolTest, OutputsAreNamed) {
   EXPECT_TRUE(fs::exists(path(paper)));
   EXPECT_TRUE(contains(out, "written: " + paper + "\nwritten: front.json\n")) << out;
   EXPECT_TRUE(contains(out, "bytes in memory")) << out;
+}
+
+TEST_F(ToolTest, ConvertEachIntoAFolder) {
+  write("a.mbsdf", sample_mbsdf());
+  write("bad.mbsdf", sample_mbsdf().substr(0, 200));
+  write("c.bsdf", sample_rgl());
+  fs::create_directories(path("d"));
+  fs::create_directories(path("out/d.x"));
+  write("d/a.mbsdf", sample_mbsdf());
+  expect_error("convert a.mbsdf c.bsdf d/a.mbsdf out", {"d/a.mbsdf: would become out/a.exr, as a.mbsdf does"});
+  expect_error("convert a.mbsdf c.bsdf none/", {"none/: no such folder"});
+  expect_error("convert a.mbsdf none/", {"none/: no such folder"});
+  expect_error("convert a.mbsdf c.bsdf b.exr", {"b.exr: no such folder"});
+  expect_error("convert a.mbsdf bad.mbsdf a.mbsdf", {"a.mbsdf: no such folder"});
+  expect_error("convert a.mbsdf b.exr --format exr", {"--format", "the extension of OUT"});
+  expect_error("convert a.mbsdf c.bsdf out --format png", {"--format", "png"});
+  expect_error("convert a.mbsdf c.bsdf out --front f.json", {"--front"});
+
+  const Outcome run = execute("convert a.mbsdf bad.mbsdf c.bsdf none.mbsdf out/ --incident 3 --grid 5x6");
+  EXPECT_EQ(run.code, 1);
+  ASSERT_EQ(run.errors.size(), 1u);
+  EXPECT_TRUE(contains(run.errors[0], "gonio convert: 2 of 4 inputs failed: bad.mbsdf: ")) << run.errors[0];
+  EXPECT_TRUE(contains(run.errors[0], "; none.mbsdf: ")) << run.errors[0];
+  EXPECT_TRUE(contains(run.out, "written: out/a.exr\n")) << run.out;
+  EXPECT_FALSE(contains(run.out, "bad")) << run.out;
+  expect_ok("convert a.mbsdf b.exr --incident 3 --grid 5x6");
+  EXPECT_EQ(load_stack(path("out/a.exr")).diagrams.diagrams[1].density, load_stack(path("b.exr")).diagrams.diagrams[1].density);
+  EXPECT_EQ(load_stack(path("out/c.exr")).source, "c.bsdf");
+  EXPECT_FALSE(fs::exists(path("out/bad.exr")));
+
+  expect_ok("convert a.mbsdf c.bsdf out/d.x --format mbsdf --grid 4x8");
+  EXPECT_TRUE(contains(execute("info out/d.x/c.mbsdf").out, "4 x 4 x 8 cells"));
+  expect_ok("convert a.mbsdf out/d.x --format binary");  // one is enough
+  EXPECT_TRUE(fs::exists(path("out/d.x/a.binary")));
 }
 
 TEST_F(ToolTest, FailureKeepsTheOldFile) {
@@ -334,6 +370,57 @@ TEST_F(ToolTest, InfoCountsRepairedCells) {
   expect_ok("validate a.mbsdf");  // a repair is a warning
   EXPECT_TRUE(contains(execute("validate a.mbsdf").out,
                        "a.mbsdf: warning: cells: found 1 negative of 288"));
+}
+
+TEST_F(ToolTest, InfoOfSeveralFiles) {
+  write("a.mbsdf", sample_mbsdf());
+  write("bad.mbsdf", sample_mbsdf().substr(0, 200));
+  write("c.bsdf", sample_rgl());
+  const std::string a = execute("info a.mbsdf").out, c = execute("info c.bsdf").out;
+  EXPECT_EQ(execute("info a.mbsdf c.bsdf").out, "a.mbsdf\n" + a + "\nc.bsdf\n" + c);
+  const Outcome run = expect_error("info bad.mbsdf a.mbsdf none.exr c.bsdf",
+                                   {"gonio info: 2 of 4 inputs failed: bad.mbsdf: ", "; none.exr: "});
+  EXPECT_EQ(run.out, "a.mbsdf\n" + a + "\nc.bsdf\n" + c);
+}
+
+// One kind of value for each name, whatever is in the file.
+TEST_F(ToolTest, InfoAsJson) {
+  using nlohmann::json;
+  std::string bytes = sample_mbsdf();
+  const float negative = -0.1f;
+  bytes.replace(bytes.size() - 4, 4, reinterpret_cast<const char*>(&negative), 4);
+  write("a.mbsdf", bytes);
+  write("c.bsdf", sample_rgl());
+  expect_ok("convert c.bsdf s.exr --incident 3 --grid 5x6");
+
+  const json table = json::parse(execute("info --json a.mbsdf --negative fill").out);
+  EXPECT_EQ(table["file"], "a.mbsdf");
+  EXPECT_EQ(table["kind"], "table");
+  EXPECT_EQ(table["format"], "MBSDF");
+  EXPECT_EQ(table["file_bytes"], bytes.size());
+  EXPECT_EQ(table["cells"]["total"], 288);
+  EXPECT_EQ(table["cells"]["negative"], (json{{"count", 1}, {"policy", "fill"}}));
+  EXPECT_EQ(table["cells"]["missing"], (json{{"count", 0}, {"policy", "fill"}}));
+  EXPECT_NEAR(table["measured_to_degrees"].get<double>(), 90, 1e-9);
+  EXPECT_NEAR(table["theta_i_degrees"][0].get<double>(), 7.5, 1e-6);
+  ASSERT_EQ(table["albedo"].size(), 7u);
+  EXPECT_EQ(table["albedo"][2]["theta_i_degrees"], 30);
+  EXPECT_NEAR(table["albedo"][2]["rgb"][1].get<double>(), 0.5, 1e-3);
+
+  const std::string all = "info --json a.mbsdf s.exr none c.bsdf";
+  const Outcome run = expect_error(all, {"1 of 4 inputs failed: none: "});
+  const json several = json::parse(run.out);
+  ASSERT_EQ(several.size(), 3u);
+  EXPECT_EQ(several[1]["kind"], "stack");
+  EXPECT_EQ(several[1]["diagrams"]["count"], 3);
+  EXPECT_EQ(several[1]["colour"]["side"], 16);
+  EXPECT_EQ(several[2]["file"], "c.bsdf");
+  for (const json& file : several) {
+    for (const char* key : {"file", "kind", "name", "format", "size", "theta_i_degrees", "file_bytes", "albedo"})
+      EXPECT_TRUE(file.contains(key)) << key;
+  }
+  EXPECT_EQ(json::parse(expect_error("info --json none other", {"2 of 2 files failed"}).out), json::array());
+  EXPECT_EQ(expect_error("info --json none", {"none: "}).out, "");
 }
 
 TEST_F(ToolTest, InfoOfAStack) {

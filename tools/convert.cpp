@@ -4,10 +4,12 @@
 #include <gonio/fitting/synth.h>
 #include <gonio/mapping/error.h>
 #include <gonio/tools/check_not_input.h>
+#include <gonio/tools/check_writable.h>
 #include <gonio/tools/convert.h>
 #include <gonio/tools/convert_rgl.h>
 #include <gonio/tools/convert_scene.h>
 #include <gonio/tools/convert_stack.h>
+#include <gonio/tools/failures.h>
 #include <gonio/tools/input.h>
 #include <gonio/tools/options.h>
 #include <gonio/tools/progress.h>
@@ -15,14 +17,18 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <string>
 #include <tuple>
+#include <vector>
 
 namespace gonio {
 namespace {
 
 struct Options {
+  std::vector<std::string> paths;  // inputs, and at last the output
+  std::string format = "exr";      // of the files in a folder
   std::string in, out, grid;
   std::string scene, scene_out;
   int n_phi_d = 360;
@@ -116,13 +122,8 @@ void scene_to_stacks(const CLI::App& verb, const Options& options) {
   convert_scene(options.scene, *options.stack.budget, options.scene_out);
 }
 
-void convert(const CLI::App& verb, Options& options) {
-  if (verb.count("--scene") > 0) {
-    scene_to_stacks(verb, options);
-    return;
-  }
-  refuse(verb, {"--output"}, "only a scene has it");
-  if (options.out.empty()) throw CLI::RequiredError(options.in.empty() ? "IN" : "OUT");
+/// IN to OUT.
+void convert_file(const CLI::App& verb, Options& options) {
   check_not_input(options.out, {options.in});
   const bool any_kind = std::filesystem::path(options.out).extension().empty() && options.stack.max_variance;
   const std::string extension =
@@ -160,6 +161,52 @@ void convert(const CLI::App& verb, Options& options) {
   print_written(options.out);
 }
 
+/// One output for each input. @throws Error if two inputs would become one file.
+std::vector<std::string> outputs_in(const std::filesystem::path& folder, const std::vector<std::string>& inputs,
+                                    const std::string& extension) {
+  std::map<std::string, std::string> taken;
+  std::vector<std::string> outputs;
+  for (const std::string& in : inputs) {
+    const std::string name = std::filesystem::path(in).stem().string() + extension;
+    const auto [other, added] = taken.emplace(name, in);
+    if (!added) throw Error(in + ": would become " + (folder / name).string() + ", as " + other->second + " does; nothing was written");
+    outputs.push_back((folder / name).string());
+  }
+  return outputs;
+}
+
+void convert_each(const CLI::App& verb, Options& options, const std::vector<std::string>& inputs, const std::string& folder) {
+  refuse(verb, {"--front"}, "it describes one material");
+  const std::vector<std::string> outputs = outputs_in(folder, inputs, "." + options.format);
+  check_writable(outputs.front());
+  Failures failures;
+  for (std::size_t k = 0; k < inputs.size(); ++k)
+    failures.survives([&] {
+      options.in = inputs[k], options.out = outputs[k];
+      convert_file(verb, options);
+    });
+  failures.throw_any(inputs.size());
+}
+
+void convert(const CLI::App& verb, Options& options) {
+  if (verb.count("--scene") > 0) {
+    scene_to_stacks(verb, options);
+    return;
+  }
+  refuse(verb, {"--output"}, "only a scene has it");
+  if (options.paths.size() < 2) throw CLI::RequiredError(options.paths.empty() ? "IN" : "OUT");
+  const std::string out = options.paths.back();
+  const std::vector<std::string> inputs(options.paths.begin(), options.paths.end() - 1);
+  if (std::error_code code; std::filesystem::is_directory(out, code)) {
+    convert_each(verb, options, inputs, out);
+    return;
+  }
+  if (inputs.size() > 1 || std::filesystem::path(out).filename().empty()) throw Error(out + ": no such folder");
+  refuse(verb, {"--format"}, "the extension of OUT is the format");
+  options.in = inputs.front(), options.out = out;
+  convert_file(verb, options);
+}
+
 }  // namespace
 
 void add_convert(CLI::App& app) {
@@ -167,11 +214,16 @@ void add_convert(CLI::App& app) {
   const StackOptions& stack = options->stack.by_hand;
   CLI::App* verb = app.add_subcommand(
       "convert", "A table as a stack file (.exr), MERL (.binary), MBSDF (.mbsdf) or RGL (.bsdf)");
-  verb->add_option("IN", options->in,
-                   "MERL, RGL or MBSDF table, stack file, or fit.json, known by its content");
-  verb->add_option("OUT", options->out,
-                   "File to write; its extension, .exr, .binary, .mbsdf or .bsdf, is its format. With none and "
-                   "--max-variance: .json if fitted lobes will do in less memory, else .exr");
+  verb->add_option("IN", options->paths,
+                   "MERL, RGL or MBSDF tables, stack files, or fit.json, known by their content, and as the last OUT: "
+                   "the file to write; its extension, .exr, .binary, .mbsdf or .bsdf, is its format. With none and "
+                   "--max-variance: .json if fitted lobes will do in less memory, else .exr. "
+                   "Or a folder that exists: each input becomes a file of its name there")
+      ->option_text("... OUT");
+  verb->add_option("--format", options->format, "Of the files in a folder")
+      ->check(CLI::IsMember({"exr", "binary", "mbsdf", "bsdf"}))
+      ->type_name("exr|binary|mbsdf|bsdf")
+      ->capture_default_str();
   verb->add_option("--grid", options->grid,
                    ".exr: at most M meridians and N parallels in a diagram [" +
                        std::to_string(stack.meridians) + "x" + std::to_string(stack.parallels) +
@@ -192,6 +244,7 @@ void add_convert(CLI::App& app) {
                  "spectral variants need them");
   add_cell_policies(*verb, options->policies);
   verb->footer(
+      "IN OUT, or IN ... FOLDER: then what fails is named at the end, and the others are written.\n"
       "MERL to MERL, RGL to RGL, and MBSDF to MBSDF without --grid, keep the values as they are stored.\n"
       "Anything else is sampled at the cell centres of OUT. A fit.json is a table of MERL's cells\n"
       "for a stack, and the model itself at the cell centres of a table.\n\n"
@@ -204,6 +257,7 @@ void add_convert(CLI::App& app) {
       "  gonio convert satin.bsdf satin.binary\n"
       "  gonio convert satin.bsdf satin.mbsdf --grid 45x90\n"
       "  gonio convert chrome.binary chrome.bsdf\n"
+      "  gonio convert measured/*.bsdf stacks/\n"
       "  gonio convert fit.json fit.exr\n"
       "  gonio convert --scene scene.json --budget 8MiB -o stacks");
   verb->callback([options, verb] { convert(*verb, *options); });

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,8 @@ class Failures {
       return true;
     } catch (const Error& error) {
       messages_.push_back(error.what());
+    } catch (const std::bad_alloc&) {
+      messages_.push_back("not enough memory");
     }
     return false;
   }

@@ -3,8 +3,11 @@
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/brdf/measured_to.h>
 #include <gonio/fitting/model.h>
+#include <gonio/mapping/error.h>
+#include <gonio/tools/failures.h>
 #include <gonio/tools/info.h>
 #include <gonio/tools/input.h>
+#include <gonio/tools/number.h>
 #include <gonio/tools/options.h>
 #include <gonio/tools/progress.h>
 
@@ -13,6 +16,7 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -22,9 +26,18 @@ namespace {
 constexpr double degree = pi<double> / 180;
 constexpr int albedo_angles[] = {2, 10, 30, 50, 70, 80, 85};
 
+using nlohmann::ordered_json;
+
 struct Options {
-  std::string file;
+  std::vector<std::string> files;
   CellPolicies policies;
+  bool json = false;
+};
+
+/// What `info` says of a file: lines for people, members for programs.
+struct Facts {
+  std::string text;
+  ordered_json json;
 };
 
 /// Text out of a file, in one line and without control characters.
@@ -33,14 +46,23 @@ std::string printable(std::string text) {
   return text;
 }
 
-void print(const char* field, const std::string& value) {
-  if (!value.empty()) std::printf("%-12s%s\n", field, printable(value).c_str());
+void line(Facts& facts, const std::string& field, const std::string& value) {
+  if (value.empty()) return;
+  facts.text += field + std::string(field.size() < 12 ? 12 - field.size() : 1, ' ') + printable(value) + "\n";
 }
 
-std::string degrees(double radians) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.4g", radians / degree);
-  return text;
+/// A line that programs get as it is.
+void both(Facts& facts, const char* field, const std::string& value) {
+  line(facts, field, value);
+  facts.json[field] = value;
+}
+
+std::string degrees(double radians) { return number(radians / degree, 4); }
+
+/// The range of incident angles.
+void angles(Facts& facts, double low, double high, const std::string& remark = "") {
+  line(facts, "theta_i", degrees(low) + " to " + degrees(high) + remark);
+  facts.json["theta_i_degrees"] = {low / degree, high / degree};
 }
 
 std::string bytes_text(std::uintmax_t bytes) {
@@ -50,75 +72,89 @@ std::string bytes_text(std::uintmax_t bytes) {
   return text;
 }
 
+void file_bytes(Facts& facts, std::uintmax_t bytes) {
+  line(facts, "file", bytes_text(bytes));
+  facts.json["file_bytes"] = bytes;
+}
+
 template <class Albedo>
-void print_albedo(const Albedo& albedo) {
-  std::printf("albedo      theta_i      red    green     blue\n");
+void add_albedo(Facts& facts, const Albedo& albedo) {
+  facts.text += "albedo      theta_i      red    green     blue\n";
+  facts.json["albedo"] = ordered_json::array();
   for (const int angle : albedo_angles) {
     const glm::vec3 a = albedo(static_cast<float>(angle * degree));
-    std::printf("            %7d  %7.4f  %7.4f  %7.4f\n", angle, static_cast<double>(a.r),
-                static_cast<double>(a.g), static_cast<double>(a.b));
+    char row[96];
+    std::snprintf(row, sizeof row, "            %7d  %7.4f  %7.4f  %7.4f\n", angle, static_cast<double>(a.r),
+                  static_cast<double>(a.g), static_cast<double>(a.b));
+    facts.text += row;
+    facts.json["albedo"].push_back({{"theta_i_degrees", angle}, {"rgb", {a.r, a.g, a.b}}});
   }
 }
 
-void print_layout(const MerlTable& table) {
-  print("format", "MERL");
-  print("size", "90 x 90 x " + std::to_string(table.n_phi_d()) +
+void add_layout(Facts& facts, const MerlTable& table) {
+  both(facts, "format", "MERL");
+  both(facts, "size", "90 x 90 x " + std::to_string(table.n_phi_d()) +
                     " cells (theta_h x theta_d x phi_d)" +
                     (table.n_phi_d() == 180 ? ", reciprocal" : ""));
-  print("theta_i", "0 to 90");
+  angles(facts, 0, pi<double> / 2);
 }
 
-void print_layout(const RglTable& table) {
-  print("format", table.spectral() ? "RGL, spectral" : "RGL, RGB");
-  print("size", std::to_string(table.theta_i().size()) + " incident angles");
-  print("theta_i", degrees(static_cast<double>(table.theta_i().front())) + " to " +
-                       degrees(static_cast<double>(table.theta_i().back())));
+void add_layout(Facts& facts, const RglTable& table) {
+  both(facts, "format", table.spectral() ? "RGL, spectral" : "RGL, RGB");
+  both(facts, "size", std::to_string(table.theta_i().size()) + " incident angles");
+  angles(facts, static_cast<double>(table.theta_i().front()), static_cast<double>(table.theta_i().back()));
 }
 
-void print_layout(const GridTable& table) {
+void add_layout(Facts& facts, const GridTable& table) {
   const double half_cell = pi<double> / 4 / table.n_theta_in();
-  print("format", "MBSDF");
-  print("size", std::to_string(table.n_theta_in()) + " x " + std::to_string(table.n_theta_out()) +
+  both(facts, "format", "MBSDF");
+  both(facts, "size", std::to_string(table.n_theta_in()) + " x " + std::to_string(table.n_theta_out()) +
                     " x " + std::to_string(table.n_phi()) + " cells (theta_in x theta_out x phi)");
-  print("theta_i",
-        degrees(half_cell) + " to " + degrees(pi<double> / 2 - half_cell) + " (cell centres)");
+  angles(facts, half_cell, pi<double> / 2 - half_cell, " (cell centres)");
 }
 
-std::string measured_text(const BrdfTable& table) {
+void add_measured(Facts& facts, const BrdfTable& table) {
   const double angle = measured_to(table);
-  return angle > 0 ? "to " + degrees(angle) + " degrees from the normal" : "less than half at every angle";
+  line(facts, "measured", angle > 0 ? "to " + degrees(angle) + " degrees from the normal" : "less than half at every angle");
+  facts.json["measured_to_degrees"] = angle / degree;
 }
 
-void print_table(const Options& options) {
-  const ProgressLine progress("reading " + options.file);
-  const BrdfTable table = load_table(options.file, options.policies);
-  const BrdfTable::Info& info = table.info();
-  print("name", info.name);
-  std::visit([](const auto& data) { print_layout(data); }, table.data());
-  print("file", bytes_text(info.source_bytes));
-  print("description", info.description);
-  const auto cells = [](std::uint64_t count, const char* kind, CellPolicy policy) {
-    return std::to_string(count) + " " + kind + " (" + to_string(policy) + ")";
+void add_cells(Facts& facts, const CellCounts& counts, const CellPolicies& policies) {
+  std::string text = std::to_string(counts.total) + ", of which ";
+  facts.json["cells"] = {{"total", counts.total}};
+  const auto add = [&](const char* key, const char* kind, std::uint64_t count, CellPolicy policy, const char* end) {
+    text += std::to_string(count) + " " + kind + " (" + to_string(policy) + ")" + end;
+    facts.json["cells"][key] = {{"count", count}, {"policy", to_string(policy)}};
   };
-  print("cells", std::to_string(info.cells.total) + ", of which " +
-                     cells(info.cells.negative, "negative", options.policies.negative) + ", " +
-                     cells(info.cells.nonfinite, "not finite", options.policies.nonfinite) + ", " +
-                     cells(info.cells.missing, "missing", options.policies.missing));
-  print("measured", measured_text(table));
-  print_albedo([&](float theta_i) { return directional_albedo(table, theta_i); });
+  add("negative", "negative", counts.negative, policies.negative, ", ");
+  add("nonfinite", "not finite", counts.nonfinite, policies.nonfinite, ", ");
+  add("missing", "missing", counts.missing, policies.missing, "");
+  line(facts, "cells", text);
 }
 
-void print_model(const std::string& path) {
+void describe_table(Facts& facts, const std::string& path, const CellPolicies& policies) {
+  const BrdfTable table = load_table(path, policies);
+  const BrdfTable::Info& info = table.info();
+  both(facts, "name", info.name);
+  std::visit([&](const auto& data) { add_layout(facts, data); }, table.data());
+  file_bytes(facts, info.source_bytes);
+  both(facts, "description", info.description);
+  add_cells(facts, info.cells, policies);
+  add_measured(facts, table);
+  add_albedo(facts, [&](float theta_i) { return directional_albedo(table, theta_i); });
+}
+
+void describe_model(Facts& facts, const std::string& path) {
   const LobeModel model = load_model(path);
-  print("name", model.name);
-  print("format", "model of fitted lobes");
-  print("size", std::to_string(model.lobes.size()) + " lobes, " +
+  both(facts, "name", model.name);
+  both(facts, "format", "model of fitted lobes");
+  both(facts, "size", std::to_string(model.lobes.size()) + " lobes, " +
                     std::to_string(model.specular_count()) + " of them specular");
-  print("theta_i", "0 to 90");
-  print("file", bytes_text(regular_file_size(path)));
-  print("description", describe(model));
+  angles(facts, 0, pi<double> / 2);
+  file_bytes(facts, regular_file_size(path));
+  both(facts, "description", describe(model));
   const BrdfTable table = load_input(path);
-  print_albedo([&](float theta_i) { return directional_albedo(table, theta_i); });
+  add_albedo(facts, [&](float theta_i) { return directional_albedo(table, theta_i); });
 }
 
 /// "3 to 40", or "3".
@@ -132,33 +168,35 @@ std::string range(const std::vector<DiagramGrid>& diagrams, const Size& size) {
   return low == high ? std::to_string(low) : std::to_string(low) + " to " + std::to_string(high);
 }
 
-void print_stack(const std::string& path) {
+void describe_stack(Facts& facts, const std::string& path) {
   const StackFile file = load_stack(path);
   const std::vector<DiagramGrid>& diagrams = file.diagrams.diagrams;
-  print("name", file.name);
-  print("format", "stack of diagrams, version " + std::to_string(stack_file_version));
-  print("source", file.source);
-  print("chart", to_string(file.diagrams.chart));
-  print("between", to_string(file.interpolation));
-  print("size",
+  both(facts, "name", file.name);
+  both(facts, "format", "stack of diagrams, version " + std::to_string(stack_file_version));
+  both(facts, "source", file.source);
+  both(facts, "chart", to_string(file.diagrams.chart));
+  both(facts, "between", to_string(file.interpolation));
+  both(facts, "size",
         std::to_string(diagrams.size()) + " diagrams of " +
             range(diagrams, [](const DiagramGrid& d) { return d.phi.size(); }) + " meridians x " +
             range(diagrams, [](const DiagramGrid& d) { return d.r.size(); }) + " parallels");
-  print("theta_i",
-        degrees(file.diagrams.theta_i.front()) + " to " + degrees(file.diagrams.theta_i.back()));
-  print("file", bytes_text(regular_file_size(path)));
+  angles(facts, file.diagrams.theta_i.front(), file.diagrams.theta_i.back());
+  file_bytes(facts, regular_file_size(path));
   const bool packed = file.storage == Storage::packed16;
-  print("diagrams", bytes_text(packed ? PackedStack(file.diagrams).bytes() : Stack<float>(file.diagrams, file.interpolation).bytes()) +
-                        " in memory, " + (packed ? "16" : "32") + " bits a crossing");
+  const std::size_t bytes = packed ? PackedStack(file.diagrams).bytes() : Stack<float>(file.diagrams, file.interpolation).bytes();
+  line(facts, "diagrams", bytes_text(bytes) + " in memory, " + (packed ? "16" : "32") + " bits a crossing");
+  facts.json["diagrams"] = {{"count", diagrams.size()}, {"memory_bytes", bytes}, {"bits_a_crossing", packed ? 16 : 32}};
   if (file.colour.empty()) {
-    print("colour", "none: sampling needs the table as well");
+    line(facts, "colour", "none: sampling needs the table as well");
+    facts.json["colour"] = nullptr;
     return;
   }
-  print("colour", std::to_string(file.colour.side()) + " x " +
-                      std::to_string(file.colour.side() / 2) + " cells at " + std::to_string(file.colour.theta_i().size()) + " angles, " +
-                      bytes_text(file.colour.bytes()) + " in memory");
+  const Colour& colour = file.colour;
+  line(facts, "colour", std::to_string(colour.side()) + " x " + std::to_string(colour.side() / 2) + " cells at " +
+                            std::to_string(colour.theta_i().size()) + " angles, " + bytes_text(colour.bytes()) + " in memory");
+  facts.json["colour"] = {{"side", colour.side()}, {"incident_angles", colour.theta_i().size()}, {"memory_bytes", colour.bytes()}};
   const CompactBsdf sampler(file.diagrams, file.interpolation, file.storage, file.colour);
-  print_albedo([&](float theta_i) {
+  add_albedo(facts, [&](float theta_i) {
     constexpr int side = 128;
     const glm::vec3 wi(std::sin(theta_i), 0, std::cos(theta_i));
     glm::dvec3 sum(0);
@@ -170,28 +208,69 @@ void print_stack(const std::string& path) {
   });
 }
 
+Facts facts_of(const std::string& path, const CellPolicies& policies) {
+  const ProgressLine progress("reading " + path);
+  Facts facts;
+  facts.json["file"] = path;
+  facts.json["kind"] = is_exr(path) ? "stack" : is_model_file(path) ? "model" : "table";
+  if (facts.json["kind"] == "stack") {
+    describe_stack(facts, path);
+  } else if (facts.json["kind"] == "model") {
+    describe_model(facts, path);
+  } else {
+    describe_table(facts, path, policies);
+  }
+  return facts;
+}
+
+void print_json(const ordered_json& json) {
+  std::printf("%s\n", json.dump(1, ' ', false, ordered_json::error_handler_t::replace).c_str());
+}
+
+/// A block for each file, under its name if there are several.
+void info_text(const Options& options) {
+  const char* before = "";
+  Failures failures;
+  for (const std::string& file : options.files)
+    failures.survives([&] {
+      const Facts facts = facts_of(file, options.policies);
+      if (options.files.size() > 1) std::printf("%s%s\n", before, printable(file).c_str());
+      std::printf("%s", facts.text.c_str());
+      before = "\n";
+    });
+  failures.throw_any(options.files.size());
+}
+
+/// One object for one file, an array for several, whatever fails.
+void info_json(const Options& options) {
+  if (options.files.size() == 1) {
+    print_json(facts_of(options.files.front(), options.policies).json);
+    return;
+  }
+  ordered_json all = ordered_json::array();
+  Failures failures;
+  for (const std::string& file : options.files)
+    failures.survives([&] { all.push_back(facts_of(file, options.policies).json); });
+  print_json(all);
+  failures.throw_any(options.files.size());
+}
+
 }  // namespace
 
 void add_info(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* verb = app.add_subcommand("info", "What a table, a stack file or a fit holds");
-  verb->add_option("FILE", options->file, "MERL, RGL or MBSDF table, stack file (.exr), or fit.json")
+  verb->add_option("FILE", options->files, "MERL, RGL or MBSDF tables, stack files (.exr), or fit.json")
       ->required();
+  verb->add_flag("--json", options->json, "As JSON: an object, or an array of them for several files");
   add_cell_policies(*verb, options->policies);
   verb->footer(
+      "What fails is named at the end, and the other files are printed.\n\n"
       "Examples:\n"
       "  gonio info chrome.binary\n"
       "  gonio info satin.bsdf --nonfinite reject\n"
-      "  gonio info stack.exr");
-  verb->callback([options] {
-    if (is_exr(options->file)) {
-      print_stack(options->file);
-    } else if (is_model_file(options->file)) {
-      print_model(options->file);
-    } else {
-      print_table(*options);
-    }
-  });
+      "  gonio info measured/*.bsdf stack.exr --json");
+  verb->callback([options] { options->json ? info_json(*options) : info_text(*options); });
 }
 
 }  // namespace gonio

@@ -4,7 +4,7 @@
 
 namespace gonio {
 
-/// `gonio info FILE`: what a table or a stack file holds.
+/// `gonio info FILE...`: what tables, stack files and fits hold.
 void add_info(CLI::App& app);
 
 }  // namespace gonio
