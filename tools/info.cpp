@@ -1,6 +1,7 @@
 #include <gonio/brdf/albedo.h>
 #include <gonio/brdf/bytes.h>
 #include <gonio/brdf/exr/stack_file.h>
+#include <gonio/brdf/flat_from.h>
 #include <gonio/brdf/measured_to.h>
 #include <gonio/fitting/model.h>
 #include <gonio/tools/info.h>
@@ -89,6 +90,29 @@ std::string measured_text(const BrdfTable& table) {
   return angle > 0 ? "to " + degrees(angle) + " degrees from the normal" : "less than half at every angle";
 }
 
+/// What a table lacks although each of its values can be used.
+void print_doubts(const BrdfTable& table) {
+  const CellCounts& cells = table.info().cells;
+  const auto percent = static_cast<int>(std::lround(100.0 * static_cast<double>(cells.negative) / static_cast<double>(cells.total)));
+  if (percent >= 1) print("doubt", std::to_string(percent) + " % of the cells are negative");
+  const auto flat = [](const char* angle, int from) {
+    constexpr int outermost = 87;  // constant beyond the last cells, as tables are
+    if (from > 0 && from < outermost)
+      print("doubt", std::string("flat: f_r does not change with ") + angle + " from " + std::to_string(from) + " degrees on");
+  };
+  const FlatFrom from = flat_from(table);
+  flat("theta_i", from.theta_i);
+  flat("theta_o", from.theta_o);
+  if (const auto* grid = std::get_if<GridTable>(&table.data()); grid != nullptr && grid->has_transmission())
+    print("doubt", "the transmission of the file is left out");
+  if (const auto* rgl = std::get_if<RglTable>(&table.data())) {
+    const CellCounts& densities = rgl->densities();
+    if (densities.negative + densities.nonfinite > 0)
+      print("doubt", "densities: " + std::to_string(densities.negative) + " negative and " +
+                         std::to_string(densities.nonfinite) + " not finite of " + std::to_string(densities.total) + ", repaired");
+  }
+}
+
 void print_table(const Options& options) {
   const ProgressLine progress("reading " + options.file);
   const BrdfTable table = load_table(options.file, options.policies);
@@ -105,6 +129,7 @@ void print_table(const Options& options) {
                      cells(info.cells.nonfinite, "not finite", options.policies.nonfinite) + ", " +
                      cells(info.cells.missing, "missing", options.policies.missing));
   print("measured", measured_text(table));
+  print_doubts(table);
   print_albedo([&](float theta_i) { return directional_albedo(table, theta_i); });
 }
 
