@@ -214,7 +214,9 @@ TEST(Rgl, DensitiesAreRepaired) {
       const float u = uniform(engine), v = uniform(engine);
       const auto a = table.sample(wi, u, v), b = expected.sample(wi, u, v);
       ASSERT_EQ(a.has_value(), b.has_value()) << name;
-      if (a) EXPECT_EQ(a->wo, b->wo) << name;
+      if (a) {
+        EXPECT_EQ(a->wo, b->wo) << name;
+      }
     }
   }
 }
@@ -254,7 +256,9 @@ TEST(Rgl, CutOffFilesSayHowLongTheyShouldBe) {
     const std::string text = to_string(problems[0]);
     EXPECT_THAT(text, HasSubstr(std::to_string(n) + " bytes"));
     EXPECT_THAT(text, HasSubstr("cut off"));
-    if (n >= data) EXPECT_THAT(text, HasSubstr("expected " + std::to_string(bytes.size()) + " bytes"));
+    if (n >= data) {
+      EXPECT_THAT(text, HasSubstr("expected " + std::to_string(bytes.size()) + " bytes"));
+    }
   }
 }
 
