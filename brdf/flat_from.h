@@ -4,7 +4,7 @@
 
 namespace gonio {
 
-/// Angles from the normal from which on f_r no longer changes, in whole degrees: 90 if it changes to the end,
+/// Angles from the normal from which on f_r no longer changes, in whole degrees, to one: 90 if it changes to the end,
 /// 0 if it never changes.
 struct FlatFrom {
   int theta_i = 90;  ///< of `wi`, whatever `wo` is

@@ -342,17 +342,17 @@ TEST_F(ToolTest, FilesOfOtherKindsAreNamed) {
 }
 
 TEST_F(ToolTest, InfoNamesFlatRegionsAndNegativeCells) {
-  // Cells of 2 degrees: constant in theta_in from the cell at 61 on, negative in a quarter.
+  // Cells of 1.5 degrees: constant in theta_in from the cell at 45.75 on, negative in a quarter.
   std::vector<float> values;
-  for (int i = 0; i < 45; ++i)
-    for (int o = 0; o < 45; ++o)
+  for (int i = 0; i < 60; ++i)
+    for (int o = 0; o < 60; ++o)
       for (int p = 0; p < 4; ++p) values.push_back(p == 0 ? -0.1f : 0.1f + 0.01f * static_cast<float>(std::min(i, 30) + o));
-  write("a.mbsdf", test::make_mbsdf(0, 45, 4, values));
+  write("a.mbsdf", test::make_mbsdf(0, 60, 4, values));
   const std::string text = execute("info a.mbsdf").out;
-  EXPECT_TRUE(contains(text, "f_r does not change with theta_i from 61 degrees on")) << text;
+  EXPECT_TRUE(contains(text, "f_r does not change with theta_i from 46 degrees on")) << text;
   EXPECT_FALSE(contains(text, "with theta_o")) << text;
   EXPECT_TRUE(contains(text, "25 % of the cells are negative")) << text;
-  write("b.mbsdf", test::make_mbsdf(0, 45, 4, std::vector<float>(values.size(), 0.3f)));
+  write("b.mbsdf", test::make_mbsdf(0, 60, 4, std::vector<float>(values.size(), 0.3f)));
   EXPECT_FALSE(contains(execute("info b.mbsdf").out, "doubt")) << "a Lambertian is flat by nature";
 }
 
