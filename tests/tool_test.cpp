@@ -332,7 +332,7 @@ TEST_F(ToolTest, FilesOfOtherKindsAreNamed) {
       {"theta_i phi\n", "a file that starts with \"theta_i phi.\""}};
   for (const auto& [bytes, found] : kinds) {
     write("x", bytes);
-    for (const std::string verb : {"info x", "convert x y.exr", "report x -o y", "fit x -o y", "ndf x"}) {
+    for (const std::string verb : {"info x", "convert x y.exr", "fit x -o y.json", "ndf x -o y.json"}) {
       const Outcome run = execute(verb);
       EXPECT_EQ(run.code, 1) << verb;
       EXPECT_TRUE(contains(all_errors(run), "found " + found)) << verb << ": " << all_errors(run);
