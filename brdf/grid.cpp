@@ -171,7 +171,7 @@ void write_mbsdf(const std::filesystem::path& path, const GridFile& file) {
 }
 
 GridTable::GridTable(const GridFile& file, const CellPolicies& policies)
-    : n_theta_in_(file.n_theta_in), n_theta_out_(file.n_theta_out), n_phi_(file.n_phi) {
+    : n_theta_in_(file.n_theta_in), n_theta_out_(file.n_theta_out), n_phi_(file.n_phi), has_transmission_(file.has_transmission) {
   check_shape(file);
   const auto channels = static_cast<std::size_t>(file.channels);
   cells_.resize(file.values.size() / channels);

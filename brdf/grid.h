@@ -55,6 +55,9 @@ class GridTable {
   float measured(const glm::vec3& wi, const glm::vec3& wo) const noexcept;
 
   const CellCounts& cells() const noexcept { return counts_; }
+
+  /// The file also had a transmission part, which eval() knows nothing of.
+  bool has_transmission() const noexcept { return has_transmission_; }
   int n_theta_in() const noexcept { return n_theta_in_; }
   int n_theta_out() const noexcept { return n_theta_out_; }
   int n_phi() const noexcept { return n_phi_; }
@@ -67,6 +70,7 @@ class GridTable {
   int n_theta_in_, n_theta_out_, n_phi_;
   std::vector<glm::vec3> cells_;  // [theta_in][theta_out][phi]; a scalar file three times the same
   CellCounts counts_;
+  bool has_transmission_;
   MeasuredCells measured_;
 };
 

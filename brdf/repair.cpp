@@ -9,8 +9,8 @@
 namespace gonio {
 namespace {
 
-void reject(const char* kind, std::uint64_t count, const CellCounts& counts) {
-  throw Error(std::string("cells: found ") + std::to_string(count) + " " + kind + " of " +
+void reject(const std::string& name, const char* kind, std::uint64_t count, const CellCounts& counts) {
+  throw Error(name + ": found " + std::to_string(count) + " " + kind + " of " +
               std::to_string(counts.total) + ", expected none");
 }
 
@@ -57,7 +57,8 @@ CellKind kind_of(const glm::vec3& cell) noexcept {
 }
 
 CellCounts repair_cells(std::vector<glm::vec3>& cells, const std::vector<CellKind>& kinds,
-                        const CellPolicies& policies, const std::vector<CellAxis>& axes) {
+                        const CellPolicies& policies, const std::vector<CellAxis>& axes,
+                        const std::string& name) {
   CellCounts counts;
   counts.total = cells.size();
   for (const CellKind kind : kinds) {
@@ -66,7 +67,7 @@ CellCounts repair_cells(std::vector<glm::vec3>& cells, const std::vector<CellKin
     counts.missing += kind == CellKind::missing;
   }
   const auto check = [&](CellPolicy policy, const char* kind, std::uint64_t count) {
-    if (policy == CellPolicy::reject && count > 0) reject(kind, count, counts);
+    if (policy == CellPolicy::reject && count > 0) reject(name, kind, count, counts);
   };
   check(policies.negative, "negative", counts.negative);
   check(policies.nonfinite, "not finite", counts.nonfinite);
@@ -90,7 +91,7 @@ CellCounts repair_cells(std::vector<glm::vec3>& cells, const std::vector<CellKin
     if (complete()) break;
     fill_along(cells, filled, axis);
   }
-  if (!complete()) throw Error("cells: found no valid one, expected at least one");
+  if (!complete()) throw Error(name + ": found no valid one, expected at least one");
   return counts;
 }
 

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <string>
 #include <vector>
 
 namespace gonio {
@@ -32,9 +33,11 @@ struct CellAxis {
 /// nonfinite and missing cells become black. CellPolicy::fill: the whole cell takes the nearest
 /// valid one along the first axis that has a valid cell on that line (the lower index at equal
 /// distance), then along the second axis, and so on.
+/// @param name of the cells, for errors
 /// @throws Error under CellPolicy::reject, or if cells are to be filled and none is valid.
 CellCounts repair_cells(std::vector<glm::vec3>& cells, const std::vector<CellKind>& kinds,
-                        const CellPolicies& policies, const std::vector<CellAxis>& axes);
+                        const CellPolicies& policies, const std::vector<CellAxis>& axes,
+                        const std::string& name = "cells");
 
 /// What the same policies make of each cell. A negative value is measured, noise about 0, unless
 /// CellPolicy::fill replaces it; one that is not finite or missing never is. Empty if every cell is

@@ -41,7 +41,38 @@ float bilinear(const RglFile::Grid& grid, float x, float y) noexcept {
   return lerp(row(ly.lo), row(ly.hi), ly.t);
 }
 
+CellCounts repair_grid(RglFile::Grid& grid, const std::string& name, const CellPolicies& policies) {
+  std::vector<glm::vec3> cells(grid.values.size());
+  std::vector<CellKind> kinds(grid.values.size());
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    cells[i] = glm::vec3(grid.values[i]);
+    kinds[i] = kind_of(cells[i]);
+  }
+  const auto n = static_cast<std::size_t>(grid.slices);
+  const auto height = static_cast<std::size_t>(grid.height), width = static_cast<std::size_t>(grid.width);
+  const CellCounts counts = repair_cells(
+      cells, kinds, policies,
+      {{n * height, width, 1, false}, {n, height, width, false}, {1, n, height * width, false}}, name);
+  for (std::size_t i = 0; i < cells.size(); ++i) grid.values[i] = cells[i].r;
+  return counts;
+}
+
 }  // namespace
+
+CellCounts repair_densities(RglFile& file, const CellPolicies& policies) {
+  CellCounts all;
+  const auto repair = [&](RglFile::Grid& grid, const char* name) {
+    const CellCounts counts = repair_grid(grid, name, policies);
+    all.total += counts.total;
+    all.negative += counts.negative;
+    all.nonfinite += counts.nonfinite;
+  };
+  repair(file.ndf, "ndf");
+  repair(file.sigma, "sigma");
+  repair(file.vndf, "vndf");
+  repair(file.luminance, "luminance");
+  return all;
+}
 
 struct RglTable::Normal {
   float u_theta, u_phi;
@@ -49,7 +80,8 @@ struct RglTable::Normal {
 };
 
 RglTable::RglTable(RglFile file, const CellPolicies& policies)
-    : theta_i_(std::move(file.theta_i)),
+    : density_counts_(repair_densities(file, policies)),
+      theta_i_(std::move(file.theta_i)),
       ndf_(std::move(file.ndf)),
       sigma_(std::move(file.sigma)),
       vndf_(file.vndf.slices, file.vndf.height, file.vndf.width, file.vndf.values),

@@ -24,8 +24,8 @@ struct RglFile {
 
   std::string description;
   std::vector<float> theta_i;  ///< radians, rising; one slice of vndf, luminance and colour each
-  Grid ndf, sigma;             ///< one slice: microfacet density and projected area
-  Grid vndf, luminance;        ///< densities, not normalised
+  Grid ndf, sigma;             ///< one slice: microfacet density and projected area, as stored
+  Grid vndf, luminance;        ///< densities, not normalised, as stored
   int colour_height = 0, colour_width = 0;
   std::vector<glm::vec3> colour;  ///< [slice][height][width], linear Rec. 709
   bool jacobian = true;           ///< colour is to be multiplied by ndf / (4 sigma)
@@ -42,6 +42,12 @@ RglFile read_rgl(const std::filesystem::path& path);
 /// The same from bytes in memory; adds to `problems` instead of throwing. Not usable if a fatal
 /// problem was found.
 RglFile parse_rgl(std::string bytes, std::vector<Problem>& problems);
+
+/// Repairs the values of ndf, sigma, vndf and luminance that are negative or not finite, as CellPolicies
+/// says. CellPolicy::fill takes the nearest valid value along theta, else phi, else theta_i.
+/// @returns how many values there are and were repaired, in all four together
+/// @throws Error under CellPolicy::reject, or if values are to be filled and none is valid, naming the field.
+CellCounts repair_densities(RglFile& file, const CellPolicies& policies);
 
 /// An RGL material ready for evaluation, with its own sampling chain.
 ///
@@ -61,7 +67,8 @@ class RglTable {
     glm::vec3 f_r;  ///< eval(wi, wo), up to rounding
   };
 
-  /// @throws Error under CellPolicy::reject, or if no colour cell is valid.
+  /// Densities are repaired as repair_densities() does.
+  /// @throws Error under CellPolicy::reject, or if no colour cell or no density is valid.
   RglTable(RglFile file, const CellPolicies& policies);
 
   /// f_r in 1/sr. Needs both directions above the horizon.
@@ -89,6 +96,9 @@ class RglTable {
   float sigma(float theta) const noexcept;
 
   const CellCounts& cells() const noexcept { return counts_; }
+
+  /// Values of ndf, sigma, vndf and luminance, and how many of them were repaired.
+  const CellCounts& densities() const noexcept { return density_counts_; }
   bool spectral() const noexcept { return n_wavelengths_ > 0; }
   const std::vector<float>& theta_i() const noexcept { return theta_i_; }
 
@@ -101,6 +111,7 @@ class RglTable {
   glm::vec3 value_at(const Normal& normal, float theta_i, const Lerp& slice, float x,
                      float y) const noexcept;
 
+  CellCounts density_counts_;
   std::vector<float> theta_i_;
   RglFile::Grid ndf_, sigma_;
   Warp2d vndf_, luminance_;

@@ -104,16 +104,26 @@ class Parser {
     }
   }
 
-  void check_not_negative(const std::string& name, const std::vector<float>& values) {
-    const auto bad = std::count_if(values.begin(), values.end(), [](float value) {
-      return !(value >= 0.0f && std::isfinite(value));
-    });
-    if (bad > 0) {
-      report(name,
-             std::to_string(bad) + " values of " + std::to_string(values.size()) +
-                 " that are negative or not finite",
-             "none");
+  // Values that RglTable repairs, as long as one of them is valid.
+  void check_density(const std::string& name, const std::vector<float>& values) {
+    std::size_t negative = 0, nonfinite = 0;
+    for (const float value : values) {
+      if (!std::isfinite(value)) {
+        ++nonfinite;
+      } else if (value < 0.0f) {
+        ++negative;
+      }
     }
+    if (negative + nonfinite == values.size()) {
+      report(name, "no valid value of " + std::to_string(values.size()), "at least one");
+      return;
+    }
+    const auto warn = [&](std::size_t count, const char* kind) {
+      if (count == 0) return;
+      report(name, std::to_string(count) + " " + kind + " of " + std::to_string(values.size()), "none", false);
+    };
+    warn(negative, "negative");
+    warn(nonfinite, "not finite");
   }
 
   RglFile::Grid read_table(const std::string& name) {
@@ -122,7 +132,7 @@ class Parser {
     if (field == nullptr) return {};
     RglFile::Grid grid{1, static_cast<int>(field->shape[0]), static_cast<int>(field->shape[1]),
                        file_.floats(*field)};
-    check_not_negative(name, grid.values);
+    check_density(name, grid.values);
     return grid;
   }
 
@@ -132,6 +142,7 @@ class Parser {
     const std::size_t half = values.size() / 2;
     float largest = 0.0f, difference = 0.0f;
     for (std::size_t i = 0; i < half; ++i) {
+      if (!std::isfinite(values[i]) || !std::isfinite(values[half + i])) continue;
       largest = std::max({largest, std::abs(values[i]), std::abs(values[half + i])});
       difference = std::max(difference, std::abs(values[i] - values[half + i]));
     }
@@ -146,13 +157,13 @@ class Parser {
     RglFile::Grid grid{static_cast<int>(n_theta_), static_cast<int>(field->shape[2]),
                        static_cast<int>(field->shape[3]), file_.floats(*field)};
     drop_second_phi(name, grid.values);
-    check_not_negative(name, grid.values);
+    check_density(name, grid.values);
     const std::size_t size = grid.values.size() / n_theta_;
     for (std::size_t s = 0; s < n_theta_; ++s) {
       const auto begin = grid.values.begin() + static_cast<std::ptrdiff_t>(s * size);
       if (std::all_of(begin, begin + static_cast<std::ptrdiff_t>(size),
-                      [](float value) { return value == 0.0f; })) {
-        report(name + "[" + std::to_string(s) + "]", "0 everywhere", "a density (taken as uniform)",
+                      [](float value) { return value <= 0.0f; })) {
+        report(name + "[" + std::to_string(s) + "]", "nothing above 0", "a density (taken as uniform)",
                false);
       }
     }

@@ -85,7 +85,9 @@ void add_slices(TensorWriter& writer, const std::string& name, const RglFile::Gr
 
 }  // namespace
 
-void write_rgl(const std::filesystem::path& path, const RglFile& file, RglColour colour) {
+void write_rgl(const std::filesystem::path& path, const RglFile& stored, RglColour colour) {
+  RglFile file = stored;
+  repair_densities(file, {});
   const auto text = [](int height, int width) {
     return std::to_string(height) + " x " + std::to_string(width);
   };

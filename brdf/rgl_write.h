@@ -14,8 +14,9 @@ enum class RglColour {
 };
 
 /// Writes an isotropic RGL file, replacing the target as a whole or leaving it as it was. Colours, ndf
-/// and sigma are those of `file` bit by bit. Slices of vndf and luminance are scaled to an integral of 1
-/// where they lack it, as readers do themselves. Spectra are of the colours as RglTable repairs them by
+/// and sigma are those of `file` bit by bit, but densities that are negative or not finite are repaired as
+/// RglTable does by default. Slices of vndf and luminance are scaled to an integral of 1 where they lack it,
+/// as readers do themselves. Spectra are of the colours as RglTable repairs them by
 /// default, without negative values. phi_i is 0.
 ///
 /// The file has every field, in type and shape, that the authors' loaders (powitacq, powitacq_rgb),

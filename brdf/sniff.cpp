@@ -1,8 +1,12 @@
 #include <gonio/brdf/bytes.h>
 #include <gonio/brdf/sniff.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cstdint>
 #include <cstring>
+#include <sstream>
+#include <vector>
 
 namespace gonio {
 namespace {
@@ -26,6 +30,66 @@ bool resembles_merl(const std::string& head, std::uintmax_t size) {
   return size == 12 + 24ull * static_cast<std::uint64_t>(n[0]) * n[1] * n[2];
 }
 
+// With a mark of the byte order, or with a 0 as every second byte.
+bool is_utf16(const std::string& head) {
+  if (starts_with(head, "\xff\xfe") || starts_with(head, "\xfe\xff")) return true;
+  if (head.size() < 8) return false;
+  for (std::size_t i = 0; i < 8; ++i)
+    if ((head[i] == '\0') == (head[i ^ 1] == '\0')) return false;
+  return (head[0] == '\0') == (head[2] == '\0') && (head[2] == '\0') == (head[4] == '\0');
+}
+
+// The Latin letters of UTF-16.
+std::string without_zeros(const std::string& head) {
+  std::string text = starts_with(head, "\xff\xfe") || starts_with(head, "\xfe\xff") ? head.substr(2) : head;
+  text.erase(std::remove(text.begin(), text.end(), '\0'), text.end());
+  return text;
+}
+
+bool is_number(const std::string& line, int least, int most) {
+  std::istringstream stream(line);
+  int value;
+  std::string rest;
+  return stream >> value && !(stream >> rest) && value >= least && value <= most;
+}
+
+// A line TILT=, or a first line that names the standard.
+bool resembles_ies(const std::vector<std::string>& lines) {
+  for (const std::string& line : lines) {
+    std::string text;
+    for (const char c : line)
+      if (!std::isspace(static_cast<unsigned char>(c))) text += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    if (starts_with(text, "TILT=") || (&line == &lines.front() && starts_with(text, "IESNA"))) return true;
+  }
+  return false;
+}
+
+// EULUMDAT has no mark: the second line is its type, then come the symmetry and the number of planes.
+bool resembles_eulumdat(const std::vector<std::string>& lines) {
+  return lines.size() > 4 && is_number(lines[1], 0, 3) && is_number(lines[2], 0, 4) && is_number(lines[3], 1, 721);
+}
+
+std::string luminaire_kind(const std::string& head) {
+  std::istringstream stream(head);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  if (resembles_eulumdat(lines)) return "EULUMDAT";
+  return !lines.empty() && resembles_ies(lines) ? "IES" : "";
+}
+
+std::string describe(const std::string& head) {
+  if (head.empty()) return "an empty file";
+  if (starts_with(head, "version https://git-lfs.github.com/spec/"))
+    return "a Git LFS pointer in place of the file (git lfs pull fetches it)";
+  const bool wide = is_utf16(head);
+  if (const std::string kind = luminaire_kind(wide ? without_zeros(head) : head); !kind.empty())
+    return "a luminaire, " + kind + (wide ? " in UTF-16" : "") + " (gonio light info takes it)";
+  if (wide) return "UTF-16 text (iconv -f UTF-16 -t UTF-8 FILE > NEW writes it as UTF-8)";
+  std::string shown;
+  for (const char c : head.substr(0, 16)) shown += c >= 0x20 && c < 0x7f ? c : '.';
+  return "a file that starts with \"" + shown + "\"";
+}
+
 }  // namespace
 
 TableFormat sniff_format(const std::filesystem::path& path) {
@@ -36,10 +100,7 @@ TableFormat sniff_format(const std::filesystem::path& path) {
 }
 
 Problem unknown_format(const std::filesystem::path& path) {
-  const std::string head = read_bytes(path, 16);
-  std::string shown;
-  for (const char c : head) shown += c >= 0x20 && c < 0x7f ? c : '.';
-  return {"format", head.empty() ? "an empty file" : "a file that starts with \"" + shown + "\"",
+  return {"format", describe(read_bytes(path, 4096)),
           "MERL (int32 90 90 180), RGL (\"tensor_file\") or MBSDF (\"NVIDIA ARC MBSDF V1\")", true};
 }
 

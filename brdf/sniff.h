@@ -13,7 +13,8 @@ enum class TableFormat { merl, rgl, mbsdf, unknown };
 /// if the file cannot be read.
 TableFormat sniff_format(const std::filesystem::path& path);
 
-/// What to report about a file whose format is unknown.
+/// What to report about a file whose format is unknown: names what it is, where that can be told, and the
+/// command that takes it.
 Problem unknown_format(const std::filesystem::path& path);
 
 }  // namespace gonio

@@ -13,7 +13,10 @@ constexpr const char* type_name[] = {"",    "u8",  "i8",  "u16", "i16", "u32",
                                      "i32", "u64", "i64", "f16", "f32", "f64"};
 constexpr std::uint16_t max_dimensions = 16;
 
-// Number of values, or false if they cannot lie within `limit` bytes (which also covers overflow).
+// No file is larger; a field that would end beyond is damaged, not cut off.
+constexpr std::uint64_t max_bytes = std::uint64_t{1} << 48;
+
+// Number of values, or false if they are more than `limit` (which also covers overflow).
 bool count_values(const std::vector<std::uint64_t>& shape, std::uint64_t limit,
                   std::size_t& count) {
   std::uint64_t product = 1;
@@ -54,6 +57,8 @@ TensorFile::TensorFile(std::string bytes, std::vector<Problem>& problems)
                         true});
     return;
   }
+  std::uint64_t needed = 0;  // bytes, to the end of the field that ends last
+  std::string last;
   for (std::uint32_t i = 0; i < n_fields; ++i) {
     const std::string which = "field " + std::to_string(i + 1) + " of " + std::to_string(n_fields);
     Field field{};
@@ -77,7 +82,9 @@ TensorFile::TensorFile(std::string bytes, std::vector<Problem>& problems)
       complete = reader.read(field.shape.data(), n_dimensions);
     }
     if (!complete) {
-      problems.push_back({which, "the end of the file", "its name, type, offset and shape", true});
+      problems.push_back({which, "the end of the file after " + std::to_string(bytes_.size()) + " bytes",
+                          "its name, type, offset and shape: the file is cut off", true});
+      fields_.clear();
       return;
     }
     if (type < 1 || type > 11) {
@@ -85,9 +92,7 @@ TensorFile::TensorFile(std::string bytes, std::vector<Problem>& problems)
       continue;
     }
     field.type = static_cast<Type>(type);
-    const std::uint64_t available =
-        offset <= bytes_.size() ? (bytes_.size() - offset) / type_size[type] : 0;
-    if (offset > bytes_.size() || !count_values(field.shape, available, field.count)) {
+    if (offset > max_bytes || !count_values(field.shape, (max_bytes - offset) / type_size[type], field.count)) {
       problems.push_back({field.name,
                           "shape " + shape_text(field.shape) + " of " + type_name[type] +
                               " at byte " + std::to_string(offset) + " of " +
@@ -96,11 +101,21 @@ TensorFile::TensorFile(std::string bytes, std::vector<Problem>& problems)
       continue;
     }
     field.offset = static_cast<std::size_t>(offset);
+    if (const std::uint64_t end = offset + field.count * type_size[type]; end > needed) {
+      needed = end;
+      last = field.name;
+    }
     if (find(field.name) != nullptr) {
       problems.push_back({field.name, "a second field of this name", "one", true});
       continue;
     }
     fields_.push_back(std::move(field));
+  }
+  if (needed > bytes_.size()) {
+    // What follows from it would only hide it.
+    problems.insert(problems.begin(), {"size", "a file of " + std::to_string(bytes_.size()) + " bytes, cut off",
+                                       std::to_string(needed) + " bytes, where " + last + " ends", true});
+    fields_.clear();
   }
 }
 

@@ -22,8 +22,8 @@ class TensorFile {
     std::size_t count;   ///< product of the shape
   };
 
-  /// Reads the list of fields. Fields that are damaged or reach past the end of the file are left
-  /// out and reported in `problems`.
+  /// Reads the list of fields. Damaged fields are left out and reported in `problems`. A file that is
+  /// cut off has no fields, and one problem that says how long it should be.
   TensorFile(std::string bytes, std::vector<Problem>& problems);
 
   /// Null if there is no such field.

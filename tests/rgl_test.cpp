@@ -183,8 +183,91 @@ TEST(Rgl, EveryFieldIsChecked) {
   };
   EXPECT_THAT(with("theta_i", -1.0f), HasSubstr("theta_i[1]: found -1"));
   EXPECT_THAT(with("theta_i", 1.57f), HasSubstr("theta_i[2]: found 1.57"));
-  EXPECT_THAT(with("vndf", std::nanf("")), HasSubstr("vndf: found 1 values of 60"));
-  EXPECT_THAT(with("sigma", -1.0f), HasSubstr("sigma: found 1 values of 8"));
+}
+
+void set(TensorBuilder& file, const char* name, std::size_t i, float value) {
+  std::memcpy(file[name].data.data() + 4 * i, &value, 4);
+}
+
+constexpr const char* densities[] = {"ndf", "sigma", "vndf", "luminance"};
+
+// Rounding noise below 0 is 0, and what is not finite is its neighbour: the table is that of the file where a
+// hand did so.
+TEST(Rgl, DensitiesAreRepaired) {
+  for (const char* name : densities) {
+    TensorBuilder noisy = make_rgl(), clean = make_rgl();
+    set(noisy, name, 1, -4e-10f);
+    set(clean, name, 1, 0.0f);
+    set(noisy, name, 4, std::nanf(""));  // uniform: its neighbour is what it was
+    set(noisy, name, 5, -std::numeric_limits<float>::infinity());
+    const RglTable table = table_of(noisy), expected = table_of(clean);
+    EXPECT_EQ(table.densities().negative, 1u) << name;
+    EXPECT_EQ(table.densities().nonfinite, 2u) << name;
+    EXPECT_EQ(table.cells().negative + table.cells().nonfinite, 0u) << name;
+    EXPECT_EQ(expected.densities().negative + expected.densities().nonfinite, 0u) << name;
+    std::mt19937 engine(8);
+    std::uniform_real_distribution<float> uniform;
+    for (int i = 0; i < 300; ++i) {
+      const glm::vec3 wi = random_direction(engine), wo = random_direction(engine);
+      EXPECT_EQ(table.eval(wi, wo), expected.eval(wi, wo)) << name;
+      EXPECT_EQ(table.pdf(wi, wo), expected.pdf(wi, wo)) << name;
+      const float u = uniform(engine), v = uniform(engine);
+      const auto a = table.sample(wi, u, v), b = expected.sample(wi, u, v);
+      ASSERT_EQ(a.has_value(), b.has_value()) << name;
+      if (a) {
+        EXPECT_EQ(a->wo, b->wo) << name;
+      }
+    }
+  }
+}
+
+TEST(Rgl, PoliciesHoldForDensities) {
+  for (const char* name : densities) {
+    TensorBuilder file = make_rgl();
+    set(file, name, 0, -1.0f);
+    CellPolicies policies;
+    policies.negative = CellPolicy::fill;
+    const glm::vec3 wi = direction(0.4, 0), wo = direction(0.7, 2);
+    EXPECT_EQ(table_of(file, policies).pdf(wi, wo), table_of(make_rgl()).pdf(wi, wo)) << name;
+    EXPECT_EQ(table_of(file, policies).eval(wi, wo), table_of(make_rgl()).eval(wi, wo)) << name;
+    policies.negative = CellPolicy::reject;
+    try {
+      table_of(file, policies);
+      ADD_FAILURE() << name;
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), HasSubstr(std::string(name) + ": found 1 negative of "));
+    }
+    for (const float bad : {-1.0f, std::nanf("")}) {
+      const std::size_t n = file[name].data.size() / 4;
+      for (std::size_t i = 0; i < n; ++i) set(file, name, i, bad);
+      EXPECT_THAT(message(file), HasSubstr(std::string(name) + ": found no valid value of "));
+    }
+  }
+}
+
+// Every cut says how long the file should be, and nothing else.
+TEST(Rgl, CutOffFilesSayHowLongTheyShouldBe) {
+  const std::string bytes = make_rgl().bytes();
+  const std::size_t data = bytes.find("uniform");
+  for (std::size_t n = 18; n < bytes.size(); ++n) {
+    std::vector<Problem> problems;
+    parse_rgl(bytes.substr(0, n), problems);
+    ASSERT_EQ(problems.size(), 1u) << n;
+    const std::string text = to_string(problems[0]);
+    EXPECT_THAT(text, HasSubstr(std::to_string(n) + " bytes"));
+    EXPECT_THAT(text, HasSubstr("cut off"));
+    if (n >= data) {
+      EXPECT_THAT(text, HasSubstr("expected " + std::to_string(bytes.size()) + " bytes"));
+    }
+  }
+}
+
+TEST(Rgl, OneInfinityHidesNoAnisotropy) {
+  TensorBuilder file = make_rgl({1, 1, 1}, true, 2);
+  set(file, "luminance", 0, std::numeric_limits<float>::infinity());
+  EXPECT_EQ(message(file), "no error");
+  set(file, "luminance", 1, 9.0f);
+  EXPECT_THAT(message(file), HasSubstr("luminance: found different data for the 2 phi_i"));
 }
 
 class RglMaterials : public ::testing::TestWithParam<const char*> {

@@ -1,4 +1,5 @@
 #include <gmock/gmock.h>
+#include <gonio/brdf/flat_from.h>
 #include <gonio/brdf/table.h>
 #include <gonio/mapping/error.h>
 #include <gtest/gtest.h>
@@ -90,6 +91,29 @@ TEST(Table, PolicyErrorsNameTheFile) {
   EXPECT_EQ(message(folder / "x"), "no error");
   EXPECT_THAT(message(folder / "x", policies),
               AllOf(HasSubstr((folder / "x").string()), HasSubstr("cells: found 1 negative of 2")));
+}
+
+TEST(Table, EveryMeasuredFileLoads) {
+  if (test_data().empty()) GTEST_SKIP() << "GONIO_TEST_DATA is not set";
+  int files = 0;
+  for (const char* name : {"rgl", "rgl_more", "mbsdf"}) {
+    for (const auto& entry : std::filesystem::directory_iterator(test_data() / name)) {
+      const std::filesystem::path& path = entry.path();
+      const bool paint = path.filename().string().rfind("carpaint", 0) == 0;
+      if (path.extension() != ".bsdf" && !paint) continue;
+      ++files;
+      EXPECT_NO_THROW(load_table(path)) << path;
+      // Rounding noise in one file of the database; the carpaints repeat their cell at 67 degrees.
+      if (path.stem() == "ilm_solo_m_68_rgb") {
+        const BrdfTable table = load_table(path);
+        EXPECT_EQ(std::get<RglTable>(table.data()).densities().negative, 16u);
+      }
+      if (paint) {
+        EXPECT_NEAR(flat_from(load_table(path)).theta_i, 67, 1) << path;
+      }
+    }
+  }
+  EXPECT_EQ(files, 12);
 }
 
 }  // namespace

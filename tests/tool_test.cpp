@@ -419,8 +419,83 @@ TEST_F(ToolTest, InfoAsJson) {
     for (const char* key : {"file", "kind", "name", "format", "size", "theta_i_degrees", "file_bytes", "albedo"})
       EXPECT_TRUE(file.contains(key)) << key;
   }
-  EXPECT_EQ(json::parse(expect_error("info --json none other", {"2 of 2 files failed"}).out), json::array());
+  EXPECT_EQ(json::parse(expect_error("info --json none other", {"2 of 2 inputs failed"}).out), json::array());
   EXPECT_EQ(expect_error("info --json none", {"none: "}).out, "");
+}
+
+std::string all_errors(const Outcome& run) {
+  std::string text;
+  for (const std::string& line : run.errors) text += line + "\n";
+  return text;
+}
+
+TEST_F(ToolTest, TransmissionIsNotDroppedSilently) {
+  write("r.mbsdf", sample_mbsdf());
+  const std::string both = sample_mbsdf() + test::make_mbsdf(0, 1, 1, {0.5f}, "MBSDF_DATA_TRANSMISSION=\n").substr(20);
+  write("a.mbsdf", both);
+  for (const std::string out : {"o.exr", "o.binary", "o.mbsdf", "o.bsdf"}) {
+    EXPECT_TRUE(contains(all_errors(execute("convert a.mbsdf " + out)), "a.mbsdf: warning: the file has transmission")) << out;
+    EXPECT_FALSE(contains(all_errors(execute("convert r.mbsdf " + out)), "transmission")) << out;
+  }
+  EXPECT_TRUE(contains(execute("info a.mbsdf").out, "the transmission of the file is left out"));
+}
+
+TEST_F(ToolTest, FilesOfOtherKindsAreNamed) {
+  const std::string ldt = "A company\n1\n1\n1\n0\n19\n5\nreport\nTILT=name\n";
+  const std::string ies = "IESNA:LM-63-2002\n[TEST] 1\nTILT=NONE\n1 1000 1 2 1 1 2 0 0 0\n";
+  const auto wide = [](const std::string& text) {
+    std::string bytes = "\xff\xfe";
+    for (const char c : text) bytes += std::string{c, '\0'};
+    return bytes;
+  };
+  const std::pair<std::string, std::string> kinds[] = {
+      {"version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 658992\n", "a Git LFS pointer"},
+      {ldt, "a luminaire, EULUMDAT (gonio light info takes it)"},
+      {ies, "a luminaire, IES (gonio light info takes it)"},
+      {"[A] no standard\ntilt = none\n", "a luminaire, IES"},
+      {wide(ies), "a luminaire, IES in UTF-16"},
+      {wide("theta_i phi"), "UTF-16 text (iconv"},
+      {wide("theta_i phi").substr(2), "UTF-16 text (iconv"},
+      {"theta_i phi\n", "a file that starts with \"theta_i phi.\""}};
+  for (const auto& [bytes, found] : kinds) {
+    write("x", bytes);
+    for (const std::string verb : {"info x", "convert x y.exr", "fit x -o y.json", "ndf x -o y.json"}) {
+      const Outcome run = execute(verb);
+      EXPECT_EQ(run.code, 1) << verb;
+      EXPECT_TRUE(contains(all_errors(run), "found " + found)) << verb << ": " << all_errors(run);
+    }
+    EXPECT_TRUE(contains(execute("validate x").out, "found " + found));
+  }
+}
+
+TEST_F(ToolTest, InfoNamesFlatRegionsAndNegativeCells) {
+  // Cells of 1.5 degrees: constant in theta_in from the cell at 45.75 on, negative in a quarter.
+  std::vector<float> values;
+  for (int i = 0; i < 60; ++i)
+    for (int o = 0; o < 60; ++o)
+      for (int p = 0; p < 4; ++p) values.push_back(p == 0 ? -0.1f : 0.1f + 0.01f * static_cast<float>(std::min(i, 30) + o));
+  write("a.mbsdf", test::make_mbsdf(0, 60, 4, values));
+  const std::string text = execute("info a.mbsdf").out;
+  EXPECT_TRUE(contains(text, "f_r does not change with theta_i from 46 degrees on")) << text;
+  EXPECT_FALSE(contains(text, "with theta_o")) << text;
+  EXPECT_TRUE(contains(text, "25 % of the cells are negative")) << text;
+  write("b.mbsdf", test::make_mbsdf(0, 60, 4, std::vector<float>(values.size(), 0.3f)));
+  EXPECT_FALSE(contains(execute("info b.mbsdf").out, "doubt")) << "a Lambertian is flat by nature";
+}
+
+TEST_F(ToolTest, InfoCountsRepairedDensities) {
+  test::TensorBuilder file = test::make_rgl();
+  const float noise = -4e-10f, nan = std::nanf("");
+  std::memcpy(file["luminance"].data.data(), &noise, 4);
+  std::memcpy(file["ndf"].data.data(), &nan, 4);
+  write("a.bsdf", file.bytes());
+  const std::string text = execute("info a.bsdf").out;
+  EXPECT_TRUE(contains(text, "densities: 1 negative and 1 not finite of ")) << text;
+  expect_ok("validate a.bsdf");
+  const std::string warnings = execute("validate a.bsdf").out;
+  EXPECT_TRUE(contains(warnings, "a.bsdf: warning: luminance: found 1 negative of ")) << warnings;
+  EXPECT_TRUE(contains(warnings, "a.bsdf: warning: ndf: found 1 not finite of 8")) << warnings;
+  expect_error("info a.bsdf --negative reject", {"a.bsdf: luminance: found 1 negative of "});
 }
 
 TEST_F(ToolTest, InfoOfAStack) {
@@ -656,8 +731,8 @@ const Damage damages[] = {
      "no valid one"},
     {"MerlLonger", Format::merl, [](const std::string& good) { return good + "x"; }, "file size"},
 
-    {"RglHalf", Format::rgl, half_of, "values that lie within the file"},
-    {"RglLastByte", Format::rgl, without_last_byte, "jacobian: found shape [1]"},
+    {"RglHalf", Format::rgl, half_of, "cut off"},
+    {"RglLastByte", Format::rgl, without_last_byte, "cut off"},
     {"RglHeader", Format::rgl, first_ten, "found a file that starts with \"tensor_fil\""},
     {"RglEmpty", Format::rgl, empty, "format: found an empty file"},
     {"RglMagic", Format::rgl, other_magic, "format: found a file that starts with"},
@@ -669,7 +744,7 @@ const Damage damages[] = {
      },
      "no valid one"},
     {"RglAllNan", Format::rgl,
-     [](const std::string& good) { return all_nan(good, good.find("uniform") + 7); }, "not finite"},
+     [](const std::string& good) { return all_nan(good, good.find("uniform") + 7); }, "no valid value"},
 
     {"MbsdfHalf", Format::mbsdf, half_of, "reflection values: found "},
     {"MbsdfLastByte", Format::mbsdf, without_last_byte,

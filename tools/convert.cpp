@@ -67,10 +67,10 @@ void table_to_merl(const CLI::App& verb, const Options& options) {
   if (sniff_format(options.in) == TableFormat::merl) {
     refuse_policies(verb, "MERL to MERL keeps the values as they are stored");
     refuse(verb, {"--phi-d"}, "MERL to MERL keeps the values as they are stored");
-    load_table(options.in);  // what cannot be used is not copied either
+    load_input(options.in);  // what cannot be used is not copied either
     write_merl(options.out, read_merl(options.in));
   } else {
-    write_table_as_merl(load_table(options.in, options.policies), options.out, options.n_phi_d);
+    write_table_as_merl(load_input(options.in, options.policies), options.out, options.n_phi_d);
   }
 }
 
@@ -78,12 +78,12 @@ void table_to_mbsdf(const CLI::App& verb, const Options& options) {
   const ProgressLine progress("writing " + options.out);
   if (sniff_format(options.in) == TableFormat::mbsdf && options.grid.empty()) {
     refuse_policies(verb, "MBSDF to MBSDF without --grid keeps the values as they are stored");
-    load_table(options.in);  // what cannot be used is not copied either
+    load_input(options.in);  // what cannot be used is not copied either
     write_mbsdf(options.out, read_mbsdf(options.in));
     return;
   }
   const auto [thetas, phis] = parse_grid("--grid", options.grid.empty() ? "90x180" : options.grid);
-  write_table_as_mbsdf(load_table(options.in, options.policies), options.out, thetas, phis);
+  write_table_as_mbsdf(load_input(options.in, options.policies), options.out, thetas, phis);
 }
 
 void model_to_table(const CLI::App& verb, const Options& options, const std::string& extension) {

@@ -41,7 +41,7 @@ RglFile to_rgl(const std::filesystem::path& in, const std::filesystem::path& out
                     describe(model));
   }
   if (sniff_format(in) == TableFormat::rgl) {
-    load_table(in);  // what cannot be used is not copied either
+    load_input(in);  // what cannot be used is not copied either
     RglFile file = read_rgl(in);
     if (file.n_wavelengths > 0 && !rgb_only) {
       throw Error(in.string() + ": spectra: found " + std::to_string(file.n_wavelengths) +
@@ -49,7 +49,7 @@ RglFile to_rgl(const std::filesystem::path& in, const std::filesystem::path& out
     }
     return file;
   }
-  const BrdfTable table = load_table(in, policies);
+  const BrdfTable table = load_input(in, policies);
   return resample(in, out, [&](const auto& wi, const auto& wo) { return table.eval(wi, wo); },
                   table.info().description);
 }

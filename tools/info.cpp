@@ -1,6 +1,7 @@
 #include <gonio/brdf/albedo.h>
 #include <gonio/brdf/bytes.h>
 #include <gonio/brdf/exr/stack_file.h>
+#include <gonio/brdf/flat_from.h>
 #include <gonio/brdf/measured_to.h>
 #include <gonio/fitting/model.h>
 #include <gonio/mapping/error.h>
@@ -132,6 +133,34 @@ void add_cells(Facts& facts, const CellCounts& counts, const CellPolicies& polic
   line(facts, "cells", text);
 }
 
+/// What a table lacks although each of its values can be used.
+void add_doubts(Facts& facts, const BrdfTable& table) {
+  facts.json["doubts"] = nlohmann::ordered_json::array();
+  const auto doubt = [&](const std::string& text) {
+    line(facts, "doubt", text);
+    facts.json["doubts"].push_back(text);
+  };
+  const CellCounts& cells = table.info().cells;
+  const auto percent = static_cast<int>(std::lround(100.0 * static_cast<double>(cells.negative) / static_cast<double>(cells.total)));
+  if (percent >= 1) doubt(std::to_string(percent) + " % of the cells are negative");
+  const auto flat = [&](const char* angle, int from) {
+    constexpr int outermost = 87;  // constant beyond the last cells, as tables are
+    if (from > 0 && from < outermost)
+      doubt(std::string("flat: f_r does not change with ") + angle + " from " + std::to_string(from) + " degrees on");
+  };
+  const FlatFrom from = flat_from(table);
+  flat("theta_i", from.theta_i);
+  flat("theta_o", from.theta_o);
+  if (const auto* grid = std::get_if<GridTable>(&table.data()); grid != nullptr && grid->has_transmission())
+    doubt("the transmission of the file is left out");
+  if (const auto* rgl = std::get_if<RglTable>(&table.data())) {
+    const CellCounts& densities = rgl->densities();
+    if (densities.negative + densities.nonfinite > 0)
+      doubt("densities: " + std::to_string(densities.negative) + " negative and " +
+                         std::to_string(densities.nonfinite) + " not finite of " + std::to_string(densities.total) + ", repaired");
+  }
+}
+
 void describe_table(Facts& facts, const std::string& path, const CellPolicies& policies) {
   const BrdfTable table = load_table(path, policies);
   const BrdfTable::Info& info = table.info();
@@ -141,6 +170,7 @@ void describe_table(Facts& facts, const std::string& path, const CellPolicies& p
   both(facts, "description", info.description);
   add_cells(facts, info.cells, policies);
   add_measured(facts, table);
+  add_doubts(facts, table);
   add_albedo(facts, [&](float theta_i) { return directional_albedo(table, theta_i); });
 }
 

@@ -2,7 +2,19 @@
 #include <gonio/fitting/synth.h>
 #include <gonio/tools/input.h>
 
+#include <cstdio>
+
 namespace gonio {
+namespace {
+
+void warn_of_transmission(const BrdfTable& table) {
+  const auto* grid = std::get_if<GridTable>(&table.data());
+  if (grid == nullptr || !grid->has_transmission()) return;
+  std::fprintf(stderr, "%s: warning: the file has transmission as well, which is left out\n",
+               table.info().source.c_str());
+}
+
+}  // namespace
 
 bool is_model_file(const std::filesystem::path& path) {
   const std::string head = read_bytes(path, 64);
@@ -11,7 +23,11 @@ bool is_model_file(const std::filesystem::path& path) {
 }
 
 BrdfTable load_input(const std::filesystem::path& path, const CellPolicies& policies) {
-  if (!is_model_file(path)) return load_table(path, policies);
+  if (!is_model_file(path)) {
+    BrdfTable table = load_table(path, policies);
+    warn_of_transmission(table);
+    return table;
+  }
   const LobeModel model = load_model(path);
   MerlTable table(synthesize_merl(model), policies);
   const CellCounts cells = table.cells();
