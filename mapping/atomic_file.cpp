@@ -1,9 +1,11 @@
 #include <gonio/mapping/atomic_file.h>
 #include <gonio/mapping/error.h>
 
+#include <cerrno>
 #include <fstream>
 #include <random>
 #include <string>
+#include <system_error>
 
 namespace gonio {
 namespace fs = std::filesystem;
@@ -12,9 +14,11 @@ void write_atomically(const fs::path& target,
                       const std::function<void(const fs::path& temporary)>& write) {
   std::error_code code;
   const bool exists = fs::exists(target, code);
+  if (code == std::errc::filename_too_long) throw Error(target.string() + ": cannot be written: " + code.message());
   if (exists && !fs::is_regular_file(target, code)) {
-    throw Error(target.string() +
-                ": found something that is not a file, expected a file or nothing");
+    throw Error(target.string() + ": found " +
+                (fs::is_directory(target, code) ? "a folder" : "something that is not a file") +
+                ", expected a file or nothing");
   }
   // A rename over a link would replace the link.
   const fs::path file = exists ? fs::canonical(target) : target;
@@ -22,8 +26,8 @@ void write_atomically(const fs::path& target,
   if (!fs::is_directory(folder, code)) {
     throw Error(target.string() + ": folder: found none, expected " + folder.string());
   }
-  fs::path temporary = file;
-  temporary += ".part-" + std::to_string(std::random_device{}());
+  // Not the name of the file with something added: that may be longer than a name can be.
+  const fs::path temporary = folder / ("gonio.part-" + std::to_string(std::random_device{}()));
   try {
     write(temporary);
     fs::rename(temporary, file, code);
@@ -38,7 +42,9 @@ void write_stream_atomically(const fs::path& target,
                              const std::function<void(std::ostream& stream)>& write) {
   write_atomically(target, [&](const fs::path& temporary) {
     std::ofstream stream(temporary, std::ios::binary | std::ios::trunc);
-    if (!stream) throw Error(target.string() + ": cannot be opened for writing");
+    if (!stream)
+      throw Error(target.string() + ": folder: found one that takes no files (" + std::generic_category().message(errno) +
+                  "), expected one that does");
     write(stream);
     stream.close();
     if (!stream) throw Error(target.string() + ": writing failed (is the disk full?)");

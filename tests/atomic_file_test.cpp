@@ -53,5 +53,35 @@ TEST(AtomicFile, FollowsLinksAndRefusesWhatIsNoFile) {
   EXPECT_THROW(write_stream_atomically(folder.path() / "none" / "x", nothing), Error);
 }
 
+/// What the error says, or "no error".
+std::string message(const std::filesystem::path& path) {
+  try {
+    write_stream_atomically(path, [](std::ostream& stream) { stream << "x"; });
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+// A file system takes names of up to 255 bytes, and so does the writer.
+TEST(AtomicFile, AnyNameThatAFileMayHave) {
+  const TemporaryFolder folder;
+  for (const std::size_t length : {1u, 239u, 240u, 244u, 255u}) {
+    const std::string name(length, 'n');
+    EXPECT_EQ(message(folder / name), "no error") << length;
+    EXPECT_EQ(file_bytes(folder / name), "x") << length;
+  }
+  const std::string too_long(256, 'n');
+  EXPECT_EQ(message(folder / too_long), (folder / too_long).string() + ": cannot be written: File name too long");
+  EXPECT_EQ(entries(folder), 5);
+}
+
+TEST(AtomicFile, SaysWhatIsInTheWay) {
+  const TemporaryFolder folder;
+  EXPECT_NE(message(folder.path()).find("found a folder, expected a file or nothing"), std::string::npos);
+  EXPECT_NE(message("/dev/null").find("found something that is not a file"), std::string::npos);
+  EXPECT_NE(message("/proc/x").find("/proc/x: folder: found one that takes no files"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace gonio
