@@ -25,7 +25,7 @@ struct Polar {
 /// The least gap of a drawn direction: what lies nearer to the horizon counts as this far from it. cos theta is
 /// then an epsilon of T.
 template <class T>
-inline constexpr T least_gap = std::numeric_limits<T>::epsilon() / 2;
+inline const T least_gap = std::numeric_limits<T>::epsilon() / 2;
 
 /// M_E, eqs. 2 and 3: disk to upper hemisphere. @param p r in [0, 1].
 /// @return a unit vector; relative error of each component at most 4 ulp, also next to the pole.

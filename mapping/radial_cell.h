@@ -57,7 +57,7 @@ struct RadialCell {
   }
 
   /// The same cell counted from its end, the radius r1, inwards: h is negative, and so are its masses.
-  RadialCell from_end(T r1) const noexcept { return {r1, -h, d1, d0}; }
+  RadialCell from_end(T r1) const noexcept { return {r1, T(-h), d1, d0}; }
 
   T radius(T s) const noexcept { return r0 + s * h; }
   /// 1 - radius(s); next to the horizon, in a cell that is counted from there, to all digits.
@@ -85,7 +85,7 @@ struct RadialPlace {
     const T mass = cell.mass(1);
     const bool from_end = last && 2 * beyond < mass;
     const T part = select(from_end, beyond, inside);
-    const RadialCell<T> c{select(from_end, r1, cell.r0), select(from_end, -cell.h, cell.h),
+    const RadialCell<T> c{select(from_end, r1, cell.r0), select(from_end, T(-cell.h), cell.h),
                           select(from_end, cell.d1, cell.d0), select(from_end, cell.d0, cell.d1)};
     return {c, part > 0 && mass > 0 ? c.invert(std::min(part / mass, T(1))) : T(0)};
   }
@@ -97,9 +97,9 @@ struct RadialPlace {
   /// `inside` from there: where the density falls to 0, radii must hold the distance.
   RadialPlace off_end(T at_horizon) const noexcept {
     if (gap() < at_horizon) return {cell, std::clamp(((1 - cell.r0) - at_horizon) / cell.h, T(0), T(1))};
-    return {cell, cell.h < 0 && cell.r0 < 1 && -s * cell.h < inside ? std::min(-inside / cell.h, T(1)) : s};
+    return {cell, cell.h < 0 && cell.r0 < 1 && -s * cell.h < inside() ? std::min(-inside() / cell.h, T(1)) : s};
   }
-  static constexpr T inside = 256 * std::numeric_limits<T>::epsilon();
+  static T inside() noexcept { return 256 * std::numeric_limits<T>::epsilon(); }
 };
 
 }  // namespace gonio

@@ -134,7 +134,7 @@ typename SphereDiagram<T>::Place SphereDiagram<T>::at(T u, T v) const noexcept {
   // Beyond the equator the cell runs backwards.
   const bool near = p.j < equator_;
   auto place = RadialPlace<T>::of(c, end_radius(p.j), near ? inside : behind, behind, near && last).off_end(least_gap);
-  if (!near && last && c.r0 > 0) place.s = std::max(place.s, std::min(RadialPlace<T>::inside / c.h, T(1)));
+  if (!near && last && c.r0 > 0) place.s = std::max(place.s, std::min(RadialPlace<T>::inside() / c.h, T(1)));
   p.radius = place.r(), p.gap = std::max(place.gap(), T(0));
   return p;
 }

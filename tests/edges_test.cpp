@@ -111,7 +111,7 @@ INSTANTIATE_TEST_SUITE_P(Slow, MeasuredEdges,
                                          "rgl/cg_sunflower_rgb.bsdf", "rgl_more/aurora_white_rgb.bsdf", "rgl_more/cc_green_malachite_rgb.bsdf",
                                          "rgl_more/chm_orange_rgb.bsdf", "rgl_more/ilm_solo_m_68_rgb.bsdf", "rgl_more/irid_flake_paint1_rgb.bsdf",
                                          "rgl_more/vch_silk_blue_rgb.bsdf", "mbsdf/carpaint_blue.mbsdf", "mbsdf/carpaint_red.mbsdf"),
-                         [](const auto& info) { return std::filesystem::path(info.param).stem().string(); });
+                         [](const auto& entry) { return std::filesystem::path(entry.param).stem().string(); });
 
 // A Lambertian opening is dark at its edge, a cone at both poles, and a beam ends at a parallel.
 TEST(Edges, Emission) {
@@ -200,7 +200,8 @@ TEST(Edges, HostileFloats) {
             ASSERT_TRUE(pdf >= 0 && std::isfinite(pdf)) << first << ' ' << a << ' ' << second << ' ' << b;
             ASSERT_TRUE(f_r.x >= 0 && std::isfinite(f_r.x + f_r.y + f_r.z)) << first << ' ' << a << ' ' << second << ' ' << b;
             const auto s = subject.sample(wi, {x[3], x[4]});
-            if (s) ASSERT_TRUE(s->pdf > 0 && std::isfinite(s->wo.x + s->wo.y + s->wo.z + s->weight.x)) << first << ' ' << a << ' ' << second << ' ' << b;
+            const bool sound = !s || (s->pdf > 0 && std::isfinite(s->wo.x + s->wo.y + s->wo.z + s->weight.x));
+            ASSERT_TRUE(sound) << first << ' ' << a << ' ' << second << ' ' << b;
           }
   }
 }
