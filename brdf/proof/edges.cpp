@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <limits>
 #include <sstream>
 #include <vector>
@@ -12,6 +13,8 @@ namespace gonio::proof {
 namespace {
 
 glm::vec3 incident(double theta_i) { return {static_cast<float>(std::sin(theta_i)), 0, static_cast<float>(std::cos(theta_i))}; }
+
+constexpr float margin = 0x1p-10f;  // of the interior
 
 /// Numbers in [0, 1) next to both ends, at all scales.
 std::vector<float> edge_numbers() {
@@ -45,7 +48,7 @@ EdgeScan scan_edges(const Subject& subject, double theta_i, const EdgeOptions& o
   for (int i = 0; i < options.interior; ++i)
     for (int j = 0; j < options.interior; ++j) {
       const glm::vec2 u = (glm::vec2(static_cast<float>(i), static_cast<float>(j)) + random.pair()) / static_cast<float>(options.interior);
-      if (const auto s = subject.sample(wi, u)) interior = std::max<double>(interior, luminance(s->weight));
+      if (const auto s = subject.sample(wi, glm::clamp(u, margin, 1 - margin))) interior = std::max<double>(interior, luminance(s->weight));
     }
 
   EdgeScan scan;

@@ -9,7 +9,7 @@ namespace gonio::proof {
 
 struct EdgeOptions {
   int along = 64;     ///< places along each side of the square, at each distance from it
-  int interior = 128;  ///< the interior is looked at in interior x interior cells, one draw in each
+  int interior = 128;  ///< the interior, at least 2^-10 from the sides, is looked at by one draw in each of interior x interior cells
   std::uint32_t seed = 1;
   Domain domain = Domain::hemisphere;  ///< what directions fill: of luminaires the sphere
 };
