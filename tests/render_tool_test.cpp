@@ -93,11 +93,11 @@ TEST_F(RenderTool, OutputsThatCannotBeWrittenAreFoundBeforeTheWork) {
   std::filesystem::create_directory(folder_ / "folder.exr");
   // Root may write to any real folder; /proc takes no files.
   EXPECT_EQ(run("--material grey.mbsdf --samples 16777216 -o /proc/a.exr"), 1);
-  EXPECT_NE(text("err").find("/proc/a.exr: folder: found none that takes files"), std::string::npos) << text("err");
+  EXPECT_NE(text("err").find("/proc/a.exr: folder: found one that takes no files"), std::string::npos) << text("err");
   EXPECT_EQ(run("--material grey.mbsdf --samples 16777216 -o folder.exr"), 1);
   EXPECT_NE(text("err").find("folder.exr: found a folder"), std::string::npos) << text("err");
   EXPECT_EQ(run("--material grey.mbsdf --methods cosine --seconds 100000 -o /proc", "compare"), 1);
-  EXPECT_NE(text("err").find("/proc/compare.html: folder: found none that takes files"), std::string::npos) << text("err");
+  EXPECT_NE(text("err").find("/proc/compare.html: folder: found one that takes no files"), std::string::npos) << text("err");
   EXPECT_EQ(run("--material grey.mbsdf --methods cosine --seconds 100000 -o grey.mbsdf", "compare"), 1);
   EXPECT_NE(text("err").find("grey.mbsdf: cannot be made a folder"), std::string::npos) << text("err");
 }

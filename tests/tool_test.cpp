@@ -898,7 +898,7 @@ TEST_F(ToolTest, MergesReports) {
   EXPECT_TRUE(contains(text, "| [chrome](../x/report.html) | merl | displacement | outgoing | 50 | 0.01 | 2 |")) << text;
   EXPECT_TRUE(contains(read_bytes(path("all/report.html")), "slow"));
   write("text.json", "no report");
-  expect_error("report --merge x/report.json text.json -o two", {"text.json: content"});
+  expect_error("report --merge x/report.json text.json -o two", {"text.json: is not JSON"});
   write("list.json", "[1]");
   expect_error("report --merge list.json -o two", {"list.json: materials"});
   write("old.json", "{\"gonio_version\": \"0.0.1\", \"materials\": [], \"lights\": []}");
