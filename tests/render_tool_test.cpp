@@ -105,7 +105,8 @@ TEST_F(RenderTool, OutputsThatCannotBeWrittenAreFoundBeforeTheWork) {
 TEST_F(RenderTool, AnInputIsNeverReplaced) {
   std::filesystem::create_hard_link(folder_ / "grey.mbsdf", folder_ / "grey.exr");
   EXPECT_EQ(run("--material grey.mbsdf --samples 16777216 -o grey.exr"), 1);
-  EXPECT_NE(text("err").find("grey.exr: output: found the same file as grey.mbsdf"), std::string::npos) << text("err");
+  EXPECT_NE(text("err").find("grey.exr: output: found the same file as "), std::string::npos) << text("err");
+  EXPECT_NE(text("err").find("/grey.mbsdf, expected another"), std::string::npos) << text("err");
 }
 
 TEST_F(RenderTool, ErrorsAreOneLineAndLeaveNoFile) {
