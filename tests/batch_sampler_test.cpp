@@ -14,6 +14,7 @@
 #include <gonio/brdf/proof/gtest.h>
 #include <gonio/brdf/proof/random.h>
 #include <gonio/mapping/error.h>
+#include <gonio/tests/batch_subject.h>
 #include <gonio/tests/batch_targets.h>
 
 namespace gonio {
@@ -108,28 +109,7 @@ float spread(const proof::Subject& sampler, const glm::vec3& wi, const glm::vec2
   return far;
 }
 
-/// The BatchSampler's single look-ups, as the harness asks for them.
-proof::Subject subject_of(const BatchSampler& batch) {
-  return {[&](const glm::vec3& wi, const glm::vec2& u) -> std::optional<BsdfSample> {
-            BsdfSample s;
-            batch.sample_n(1, {&wi.x, &wi.y, &wi.z}, &u.x, &u.y, {&s.wo.x, &s.wo.y, &s.wo.z}, &s.pdf,
-                           {&s.weight.x, &s.weight.y, &s.weight.z});
-            if (!(s.pdf > 0)) return std::nullopt;
-            return s;
-          },
-          [&](const glm::vec3& wi, const glm::vec3& wo) {
-            float pdf;
-            batch.pdf_n(1, {&wi.x, &wi.y, &wi.z}, {&wo.x, &wo.y, &wo.z}, &pdf);
-            return static_cast<double>(pdf);
-          },
-          [&](const glm::vec3& wi, const glm::vec3& wo) {
-            glm::vec3 f_r;
-            batch.eval_n(1, {&wi.x, &wi.y, &wi.z}, {&wo.x, &wo.y, &wo.z}, {&f_r.x, &f_r.y, &f_r.z});
-            return f_r;
-          }};
-}
-
-/// The same from what it answers for one element.
+/// What it answers for one element.
 proof::Subject one_at_a_time(const BatchSampler& batch) {
   return {[&](const glm::vec3& wi, const glm::vec2& u) { return batch.sample(wi, u); },
           [&](const glm::vec3& wi, const glm::vec3& wo) { return static_cast<double>(batch.pdf(wi, wo)); },
@@ -227,7 +207,7 @@ TEST_P(BatchSamplerOn, InvariantsHold) {
       options.weight_bound = c.self_contained ? 1e-2 : 1e-4;
       options.density_floor = c.self_contained ? 1e-2 : 1e-6;
       options.direction_bound = c.chart == Chart::half ? 1e-3 : 5e-4;
-      EXPECT_THAT_SAMPLER_INVARIANTS_HOLD(subject_of(batch), theta_i, options) << c.name;
+      EXPECT_THAT_SAMPLER_INVARIANTS_HOLD(batch_subject(batch), theta_i, options) << c.name;
       EXPECT_THAT_SAMPLER_INVARIANTS_HOLD(one_at_a_time(batch), theta_i, options) << c.name << ", one at a time";
     }
   }
@@ -236,7 +216,7 @@ TEST_P(BatchSamplerOn, InvariantsHold) {
 // The harness sees what is wrong in a batch: a weight off by 1 %.
 TEST_P(BatchSamplerOn, WrongWeightsAreFound) {
   const BatchSampler& batch = cases().front().batch;
-  proof::Subject subject = subject_of(batch);
+  proof::Subject subject = batch_subject(batch);
   subject.sample = [right = subject.sample](const glm::vec3& wi, const glm::vec2& u) {
     auto s = right(wi, u);
     if (s) s->weight *= 1.01f;

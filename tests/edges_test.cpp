@@ -19,6 +19,7 @@
 #include <gonio/fitting/lobe_sampler.h>
 #include <gonio/fitting/model.h>
 #include <gonio/mapping/light/emission.h>
+#include <gonio/tests/batch_subject.h>
 
 namespace gonio::proof {
 namespace {
@@ -29,27 +30,6 @@ std::shared_ptr<const BrdfTable> table(const std::string& name) {
   for (const GalleryTable& entry : gallery_tables())
     if (entry.name == name) return std::make_shared<const BrdfTable>(to_table(entry));
   throw std::logic_error("the Gallery has no table " + name);
-}
-
-/// What BatchSampler answers for one element of a batch.
-Subject of_batch(const BatchSampler& batch) {
-  return {[&](const glm::vec3& wi, const glm::vec2& u) -> std::optional<BsdfSample> {
-            BsdfSample s;
-            batch.sample_n(1, {&wi.x, &wi.y, &wi.z}, &u.x, &u.y, {&s.wo.x, &s.wo.y, &s.wo.z}, &s.pdf,
-                           {&s.weight.x, &s.weight.y, &s.weight.z});
-            if (!(s.pdf > 0)) return std::nullopt;
-            return s;
-          },
-          [&](const glm::vec3& wi, const glm::vec3& wo) {
-            float pdf;
-            batch.pdf_n(1, {&wi.x, &wi.y, &wi.z}, {&wo.x, &wo.y, &wo.z}, &pdf);
-            return static_cast<double>(pdf);
-          },
-          [&](const glm::vec3& wi, const glm::vec3& wo) {
-            glm::vec3 f_r;
-            batch.eval_n(1, {&wi.x, &wi.y, &wi.z}, {&wo.x, &wo.y, &wo.z}, {&f_r.x, &f_r.y, &f_r.z});
-            return f_r;
-          }};
 }
 
 void expect_sound(const std::string& what, const Subject& subject, double theta_i) {
@@ -71,9 +51,9 @@ void expect_all_sound(const std::string& name, const std::shared_ptr<const BrdfT
     expect_sound(name + ", 32 bits", subject_of(floats), theta_i);
     expect_sound(name + ", compact", subject_of(compact), theta_i);
     expect_sound(name + ", lanes", subject_of(batch), theta_i);
-    expect_sound(name + ", batch", of_batch(batch), theta_i);
+    expect_sound(name + ", batch", batch_subject(batch), theta_i);
     expect_sound(name + ", compact lanes", subject_of(compact_batch), theta_i);
-    expect_sound(name + ", compact batch", of_batch(compact_batch), theta_i);
+    expect_sound(name + ", compact batch", batch_subject(compact_batch), theta_i);
     const DirectionScan directions = scan_directions(subject_of(sampler), theta_i);
     EXPECT_LE(directions.largest_weight, 50) << name << ", " << theta_i / degree << " degrees, " << directions.where;
     EXPECT_EQ(directions.without_pdf, 0) << name << ", " << theta_i / degree << " degrees";
@@ -183,7 +163,7 @@ TEST(Edges, HostileFloats) {
   const Sampler sampler(from, fit.diagrams, Interpolation::blend, Storage::packed16);
   const CompactBsdf compact = fit.bsdf();
   const BatchSampler batch(sampler), compact_batch(compact);
-  const Subject subjects[] = {subject_of(sampler), subject_of(compact), subject_of(batch), of_batch(batch), subject_of(compact_batch), of_batch(compact_batch)};
+  const Subject subjects[] = {subject_of(sampler), subject_of(compact), subject_of(batch), batch_subject(batch), subject_of(compact_batch), batch_subject(compact_batch)};
   using Limits = std::numeric_limits<float>;
   const float hostile[] = {Limits::quiet_NaN(), Limits::infinity(), -Limits::infinity(), Limits::max(), -Limits::max(),
                            Limits::denorm_min(), -Limits::denorm_min(), Limits::min(), 0.0f, -0.0f, -1.0f, 2.0f, 1e-30f, 1e30f};
@@ -217,7 +197,7 @@ TEST(Edges, SelfContainedValuesAtTheHorizon) {
     const glm::vec3 wo(-1, 0, z);
     EXPECT_LE(compact.eval(wi, wo).y, 1.01f * above) << z;
     EXPECT_LE(batch.eval(wi, wo).y, 1.01f * above) << z;
-    EXPECT_LE(of_batch(batch).f_r(wi, wo).y, 1.01f * above) << z;
+    EXPECT_LE(batch_subject(batch).f_r(wi, wo).y, 1.01f * above) << z;
   }
 }
 

@@ -7,12 +7,11 @@
 #include <sstream>
 #include <vector>
 
+#include <gonio/brdf/proof/incident.h>
 #include <gonio/brdf/proof/random.h>
 
 namespace gonio::proof {
 namespace {
-
-glm::vec3 incident(double theta_i) { return {static_cast<float>(std::sin(theta_i)), 0, static_cast<float>(std::cos(theta_i))}; }
 
 constexpr float margin = 0x1p-10f;  // of the interior
 

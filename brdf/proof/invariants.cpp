@@ -9,16 +9,13 @@
 
 #include <gonio/brdf/proof/coherence.h>
 #include <gonio/brdf/proof/edges.h>
+#include <gonio/brdf/proof/incident.h>
 #include <gonio/brdf/proof/random.h>
 
 namespace gonio::proof {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-glm::vec3 incident(double theta_i) {
-  return {static_cast<float>(std::sin(theta_i)), 0, static_cast<float>(std::cos(theta_i))};
-}
 
 std::string text(const glm::vec3& w) {
   std::ostringstream out;

@@ -5,12 +5,11 @@
 
 #include <gonio/brdf/frame.h>
 #include <gonio/brdf/proof/edges.h>
+#include <gonio/brdf/proof/incident.h>
 #include <gonio/brdf/proof/random.h>
 
 namespace gonio::proof {
 namespace {
-
-glm::vec3 incident(double theta_i) { return {static_cast<float>(std::sin(theta_i)), 0, static_cast<float>(std::cos(theta_i))}; }
 
 /// invert() of a stack with directions of the surface.
 template <class S>
