@@ -65,7 +65,7 @@ class Diagram {
   };
   /// A position along a meridian, and the pdf [1/sr] there.
   struct Parallel {
-    T r, pdf, gap = 1 - r;  ///< gap: see Polar
+    T r = T(0), pdf = T(0), gap = 1 - r;  ///< gap: see Polar
   };
 
   /// M_C forward, eqs. 20-25: the meridian below which the fraction u of the mass lies. The

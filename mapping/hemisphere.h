@@ -19,7 +19,7 @@ using Vec3 = glm::vec<3, T, glm::defaultp>;
 /// digits that r has not, and densities that fall to 0 at the horizon have no others.
 template <class T>
 struct Polar {
-  T r, phi, gap = 1 - r;
+  T r = T(0), phi = T(0), gap = 1 - r;
 };
 
 /// The least gap of a drawn direction: what lies nearer to the horizon counts as this far from it. cos theta is
