@@ -1,4 +1,4 @@
-#include <gonio/brdf/bytes.h>
+#include <gonio/mapping/bytes.h>
 #include <gonio/mapping/fast_math.h>
 #include <gonio/brdf/grid.h>
 #include <gonio/brdf/interpolate.h>

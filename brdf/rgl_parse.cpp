@@ -1,4 +1,4 @@
-#include <gonio/brdf/bytes.h>
+#include <gonio/mapping/bytes.h>
 #include <gonio/brdf/rgl.h>
 #include <gonio/brdf/spectrum.h>
 #include <gonio/brdf/tensor_file.h>

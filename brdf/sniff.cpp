@@ -1,4 +1,4 @@
-#include <gonio/brdf/bytes.h>
+#include <gonio/mapping/bytes.h>
 #include <gonio/brdf/sniff.h>
 
 #include <algorithm>
@@ -79,12 +79,13 @@ std::string luminaire_kind(const std::string& head) {
 
 std::string describe(const std::string& head) {
   if (head.empty()) return "an empty file";
-  if (starts_with(head, "version https://git-lfs.github.com/spec/"))
-    return "a Git LFS pointer in place of the file (git lfs pull fetches it)";
+  if (starts_with(head, std::string("\x76\x2f\x31\x01", 4))) return "an OpenEXR file (gonio info takes stack files)";
   const bool wide = is_utf16(head);
   if (const std::string kind = luminaire_kind(wide ? without_zeros(head) : head); !kind.empty())
     return "a luminaire, " + kind + (wide ? " in UTF-16" : "") + " (gonio light info takes it)";
   if (wide) return "UTF-16 text (iconv -f UTF-16 -t UTF-8 FILE > NEW writes it as UTF-8)";
+  const std::size_t first = head.find_first_not_of(" \t\r\n");
+  if (first != std::string::npos && head[first] == '{') return "a JSON file (gonio info takes fits, gonio render takes scenes)";
   std::string shown;
   for (const char c : head.substr(0, 16)) shown += c >= 0x20 && c < 0x7f ? c : '.';
   return "a file that starts with \"" + shown + "\"";
@@ -99,9 +100,19 @@ TableFormat sniff_format(const std::filesystem::path& path) {
   return resembles_merl(head, regular_file_size(path)) ? TableFormat::merl : TableFormat::unknown;
 }
 
+std::string describe_file(const std::filesystem::path& path) {
+  const std::string taken = " (gonio info and gonio convert take it)";
+  switch (sniff_format(path)) {
+    case TableFormat::merl: return "a measured BRDF, MERL" + taken;
+    case TableFormat::rgl: return "a measured BRDF, RGL" + taken;
+    case TableFormat::mbsdf: return "a measured BRDF, MBSDF" + taken;
+    case TableFormat::unknown: break;
+  }
+  return describe(read_bytes(path, 4096));
+}
+
 Problem unknown_format(const std::filesystem::path& path) {
-  return {"format", describe(read_bytes(path, 4096)),
-          "MERL (int32 90 90 180), RGL (\"tensor_file\") or MBSDF (\"NVIDIA ARC MBSDF V1\")", true};
+  return {"format", describe_file(path), "MERL (int32 90 90 180), RGL (\"tensor_file\") or MBSDF (\"NVIDIA ARC MBSDF V1\")", true};
 }
 
 }  // namespace gonio

@@ -3,6 +3,7 @@
 #include <gonio/brdf/problem.h>
 
 #include <filesystem>
+#include <string>
 
 namespace gonio {
 
@@ -13,8 +14,12 @@ enum class TableFormat { merl, rgl, mbsdf, unknown };
 /// if the file cannot be read.
 TableFormat sniff_format(const std::filesystem::path& path);
 
-/// What to report about a file whose format is unknown: names what it is, where that can be told, and the
-/// command that takes it.
+/// What a file is, as far as its first bytes tell, and the command that takes it: "a luminaire, IES (gonio light
+/// info takes it)". @throws Error if the file cannot be read.
+std::string describe_file(const std::filesystem::path& path);
+
+/// What to report about a file whose format is unknown: what it is, by describe_file(), and
+/// what was expected.
 Problem unknown_format(const std::filesystem::path& path);
 
 }  // namespace gonio

@@ -1,4 +1,4 @@
-#include <gonio/brdf/bytes.h>
+#include <gonio/mapping/bytes.h>
 #include <gonio/brdf/frame.h>
 #include <gonio/brdf/sniff.h>
 #include <gonio/brdf/table.h>

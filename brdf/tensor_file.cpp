@@ -1,4 +1,4 @@
-#include <gonio/brdf/bytes.h>
+#include <gonio/mapping/bytes.h>
 #include <gonio/brdf/tensor_file.h>
 
 #include <algorithm>

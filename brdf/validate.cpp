@@ -1,5 +1,5 @@
 #include <gonio/brdf/albedo.h>
-#include <gonio/brdf/bytes.h>
+#include <gonio/mapping/bytes.h>
 #include <gonio/brdf/sniff.h>
 #include <gonio/brdf/validate.h>
 #include <gonio/mapping/error.h>

@@ -65,6 +65,8 @@ class Rules {
 }  // namespace
 
 json parse_json(std::string_view text, const std::string& where) {
+  if (text.substr(0, 2) == "\xff\xfe" || text.substr(0, 2) == "\xfe\xff")
+    throw Error(where + ": found UTF-16, expected JSON in UTF-8 (iconv -f UTF-16 -t UTF-8 FILE > NEW writes it)");
   Rules rules(where);
   try {
     return json::parse(text, [&](int, json::parse_event_t event, const json& parsed) {

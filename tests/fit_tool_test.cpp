@@ -1,6 +1,6 @@
 // Runs `gonio fit`, and the verbs that read what it writes, as a user does.
 
-#include <gonio/brdf/bytes.h>
+#include <gonio/mapping/bytes.h>
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/brdf/table.h>
 #include <gonio/fitting/synth.h>

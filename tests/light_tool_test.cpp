@@ -168,15 +168,15 @@ TEST_F(LightTool, OtherFilesAreNamedAsWhatTheyAre) {
   for (const std::string verb : {"info", "convert", "plot", "sample", "compare"}) {
     const std::string out = verb == "convert" ? " x.ldt" : verb == "plot" ? " x.svg" : "";
     refused("light " + verb + " a.bsdf" + out,
-            "a.bsdf: found a measured BRDF (RGL), which gonio info");
-    refused("light " + verb + " a.mbsdf" + out, "a.mbsdf: found a measured BRDF (MBSDF)");
-    refused("light " + verb + " a.binary" + out, "a.binary: found a measured BRDF (MERL)");
+            "a.bsdf: found a measured BRDF, RGL (gonio info");
+    refused("light " + verb + " a.mbsdf" + out, "a.mbsdf: found a measured BRDF, MBSDF");
+    refused("light " + verb + " a.binary" + out, "a.binary: found a measured BRDF, MERL");
     refused("light " + verb + " fit.json" + out, "found a JSON file");
     refused("light " + verb + " pointer.ies" + out, "found a Git LFS pointer");
-    refused("light " + verb + " image.exr" + out, "found an EXR file without a luminaire");
+    refused("light " + verb + " image.exr" + out, "found an OpenEXR file");
   }
   EXPECT_EQ(run("light validate a.bsdf"), 1);
-  EXPECT_NE(read("out").find("found a measured BRDF (RGL)"), std::string::npos) << read("out");
+  EXPECT_NE(read("out").find("found a measured BRDF, RGL"), std::string::npos) << read("out");
 }
 
 TEST_F(LightTool, AnInputIsNeverReplaced) {

@@ -132,7 +132,7 @@ TEST_F(NdfTool, RefusesWithOneLine) {
   refused("g1.exr -o none", "gonio:quantity");
   test::write_file(folder_ / "black.mbsdf", test::make_mbsdf(1, 6, 8, std::vector<float>(3 * 6 * 6 * 8, 0.0f)));
   refused("black.mbsdf -o none", "retro-reflection");
-  refused("missing -o none", "missing: found nothing");
+  refused("missing -o none", "missing: no such file");
   test::write_file(folder_ / "text", "text");
   refused("text -o none", "text");
   refused("black.mbsdf -o none --size 5000", "--size");

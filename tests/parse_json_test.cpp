@@ -59,6 +59,11 @@ TEST(ParseJson, SaysWhereItIsNoJson) {
   EXPECT_LT(error_of("{" + key + "," + key + "}").size(), 300u);
 }
 
+TEST(ParseJson, Utf16IsNamed) {
+  EXPECT_THAT(error_of(std::string("\xff\xfe{\0}\0", 6)), HasSubstr("a.json: found UTF-16, expected JSON in UTF-8"));
+  EXPECT_THAT(error_of(std::string("\xfe\xff\0{\0}", 6)), HasSubstr("found UTF-16"));
+}
+
 TEST(Shown, IsShortAndOfWholeCharacters) {
   EXPECT_EQ(shown({1, 2.5, "x"}), "[1,2.5,\"x\"]");
   const std::string long_text = shown(std::string(100, 'x'));

@@ -1,6 +1,6 @@
 // `gonio convert --scene`, run as a user does.
 
-#include <gonio/brdf/bytes.h>
+#include <gonio/mapping/bytes.h>
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/brdf/incidence_profile.h>
 #include <gonio/fitting/synth.h>

@@ -11,7 +11,7 @@
 #include <ImfRgbaFile.h>
 #include <ImfStringAttribute.h>
 #include <ImfTiledRgbaFile.h>
-#include <gonio/brdf/bytes.h>
+#include <gonio/mapping/bytes.h>
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/mapping/error.h>
 #include <gtest/gtest.h>

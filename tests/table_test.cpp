@@ -71,8 +71,8 @@ TEST(Table, ZeroAtAndBelowTheHorizonAndNeverNaN) {
 
 TEST(Table, WhatIsNoTableIsNamed) {
   const TemporaryFolder folder;
-  EXPECT_THAT(message(folder / "none"), AllOf(HasSubstr("none: found nothing")));
-  EXPECT_THAT(message(folder.path()), HasSubstr("found something that is not a file"));
+  EXPECT_THAT(message(folder / "none"), AllOf(HasSubstr("none: no such file")));
+  EXPECT_THAT(message(folder.path()), HasSubstr("found a folder, expected a file"));
   write_file(folder / "empty", "");
   EXPECT_THAT(message(folder / "empty"), HasSubstr("empty: format: found an empty file"));
   write_file(folder / "text", "<?xml version=\"1.0\"?>");

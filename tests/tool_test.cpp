@@ -2,10 +2,11 @@
 
 #include <gonio/brdf/albedo.h>
 #include <gonio/brdf/build.h>
-#include <gonio/brdf/bytes.h>
+#include <gonio/mapping/bytes.h>
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/tests/table_files.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -464,7 +465,29 @@ TEST_F(ToolTest, FilesOfOtherKindsAreNamed) {
       EXPECT_EQ(run.code, 1) << verb;
       EXPECT_TRUE(contains(all_errors(run), "found " + found)) << verb << ": " << all_errors(run);
     }
-    EXPECT_TRUE(contains(execute("validate x").out, "found " + found));
+    const Outcome validated = execute("validate x");
+    EXPECT_TRUE(contains(validated.out + all_errors(validated), "found " + found));
+  }
+}
+
+// Opening a pipe would wait for ever for somebody who writes to it.
+TEST_F(ToolTest, PipesAndPointersAreRefusedByEveryReader) {
+  ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  write("pointer", "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 658992\n");
+  for (const auto& [file, found] : {std::pair("pipe", "pipe: found a pipe or a device, expected a file"),
+                                    std::pair("pointer", "pointer: found a Git LFS pointer in place of the file")}) {
+    const std::string name = file;
+    write("mesh.json", "{\"objects\": [{\"mesh\": \"" + name + "\"}]}");
+    for (const std::string verb : {"info NAME", "validate NAME", "convert NAME y.exr", "convert --scene NAME out", "fit NAME -o y.json", "ndf NAME -o y.json",
+                                   "report NAME -o out", "report --merge NAME -o out", "render NAME -o y.exr", "render mesh.json -o y.exr",
+                                   "render --material NAME -o y.exr", "render --environment NAME -o y.exr", "compare --material NAME -o out",
+                                   "light info NAME", "light validate NAME", "light convert NAME y.ldt"}) {
+      std::string command = verb;
+      if (const std::size_t at = command.find("NAME"); at != std::string::npos) command.replace(at, 4, name);
+      const Outcome run = execute(command);
+      EXPECT_EQ(run.code, 1) << command;
+      EXPECT_TRUE(contains(all_errors(run) + run.out, found)) << command << ": " << all_errors(run) << run.out;
+    }
   }
 }
 

@@ -152,7 +152,7 @@ TEST(Validate, MislabelledFiles) {
   EXPECT_THAT(texts(validate_table(folder / "b")), Contains(HasSubstr("magic: found")));
   EXPECT_THAT(texts(validate_table(folder / "c")),
               Contains(HasSubstr("container version: found 9.0")));
-  EXPECT_THAT(texts(validate_table(folder / "none")), Contains(HasSubstr("found nothing")));
+  EXPECT_THAT(texts(validate_table(folder / "none")), Contains(HasSubstr("no such file")));
 }
 
 TEST(Validate, MeasuredFiles) {

@@ -1,5 +1,5 @@
 #include <gonio/brdf/albedo.h>
-#include <gonio/brdf/bytes.h>
+#include <gonio/mapping/bytes.h>
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/brdf/flat_from.h>
 #include <gonio/brdf/measured_to.h>

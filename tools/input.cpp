@@ -1,4 +1,4 @@
-#include <gonio/brdf/bytes.h>
+#include <gonio/mapping/bytes.h>
 #include <gonio/fitting/synth.h>
 #include <gonio/tools/input.h>
 

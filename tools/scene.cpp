@@ -1,4 +1,4 @@
-#include <gonio/brdf/bytes.h>
+#include <gonio/mapping/bytes.h>
 #include <gonio/fitting/parse_json.h>
 #include <gonio/mapping/error.h>
 #include <gonio/tools/scene.h>

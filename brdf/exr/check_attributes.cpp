@@ -5,7 +5,7 @@
 #include <cstring>
 #include <map>
 
-#include <gonio/brdf/bytes.h>
+#include <gonio/mapping/bytes.h>
 #include <gonio/mapping/error.h>
 
 namespace gonio {

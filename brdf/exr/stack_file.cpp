@@ -21,7 +21,7 @@
 #include <cstring>
 #include <vector>
 
-#include <gonio/brdf/bytes.h>
+#include <gonio/mapping/bytes.h>
 #include <gonio/brdf/exr/check_attributes.h>
 #include <gonio/mapping/atomic_file.h>
 #include <gonio/mapping/error.h>

@@ -1,24 +1,13 @@
+#include <gonio/mapping/bytes.h>
 #include <gonio/mapping/error.h>
 #include <gonio/mapping/light/luminaire.h>
 #include <gonio/mapping/light/text_scanner.h>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 
 namespace gonio {
 namespace {
-
-std::string read_bytes(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw Error(path.string() + ": cannot be opened");
-  if (std::filesystem::is_directory(path))  // its stream opens, and throws what names no file
-    throw Error(path.string() + ": found a folder, expected a file");
-  std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  if (stream.bad()) throw Error(path.string() + ": cannot be read");
-  return text;
-}
 
 /// The text of a photometric file.
 std::string read_text(const std::filesystem::path& path, Deviations& deviations) {

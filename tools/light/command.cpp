@@ -1,14 +1,10 @@
-#include <gonio/brdf/bytes.h>
-#include <gonio/brdf/exr/stack_file.h>
 #include <gonio/brdf/sniff.h>
 #include <gonio/mapping/error.h>
 #include <gonio/mapping/light/exr/light_exr.h>
 #include <gonio/mapping/light/light_texture.h>
 #include <gonio/mapping/light/photometry.h>
-#include <gonio/tools/input.h>
 #include <gonio/tools/light/command.h>
 
-#include <filesystem>
 #include <map>
 
 namespace gonio {
@@ -18,28 +14,6 @@ const std::map<std::string, LightFilter> filters{{"bilinear", LightFilter::bilin
                                                  {"catmull-rom", LightFilter::catmull_rom},
                                                  {"mitchell", LightFilter::mitchell},
                                                  {"bspline", LightFilter::bspline}};
-
-/// What a file that is no luminaire is, and what takes it; empty if that is not known.
-std::string other_kind(const std::string& file) {
-  if (!std::filesystem::is_regular_file(file)) return {};
-  if (is_exr(file))
-    return "an EXR file without a luminaire (gonio info takes stack files; images are only "
-           "written)";
-  switch (sniff_format(file)) {
-    case TableFormat::merl:
-      return "a measured BRDF (MERL), which gonio info and gonio convert take";
-    case TableFormat::rgl:
-      return "a measured BRDF (RGL), which gonio info and gonio convert take";
-    case TableFormat::mbsdf:
-      return "a measured BRDF (MBSDF), which gonio info and gonio convert take";
-    case TableFormat::unknown:
-      break;
-  }
-  if (is_model_file(file)) return "a JSON file (gonio info takes fits, gonio render takes scenes)";
-  if (read_bytes(file, 40).find("version https://git-lfs") == 0)
-    return "a Git LFS pointer, which only names the file (git lfs pull brings it)";
-  return {};
-}
 
 }  // namespace
 
@@ -55,8 +29,7 @@ LightOptions LightCommand::reading() const {
 
 Luminaire load_as_is(const std::string& file, const LightCommand& o, Deviations& deviations) {
   if (!is_light_file(file))
-    if (const std::string kind = other_kind(file); !kind.empty())
-      throw Error(file + ": found " + kind + ", expected a luminaire (IES, EULUMDAT or light EXR)");
+    throw Error(file + ": found " + describe_file(file) + ", expected a luminaire (IES, EULUMDAT or light EXR)");
   return load_any_light(file, o.reading(), deviations);
 }
 

@@ -7,7 +7,7 @@
 #include <map>
 #include <sstream>
 
-#include <gonio/brdf/bytes.h>
+#include <gonio/mapping/bytes.h>
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/fitting/parse_json.h>
 #include <gonio/mapping/error.h>

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <ostream>
 
-#include <gonio/brdf/bytes.h>
+#include <gonio/mapping/bytes.h>
 #include <gonio/fitting/parse_json.h>
 #include <gonio/mapping/atomic_file.h>
 #include <gonio/mapping/error.h>

@@ -1,5 +1,6 @@
 #include <gonio/tools/report/provenance.h>
 
+#include <gonio/mapping/bytes.h>
 #include <gonio/mapping/error.h>
 #include <openssl/evp.h>
 
@@ -10,6 +11,7 @@
 namespace gonio {
 
 std::string sha256_of(const std::filesystem::path& path) {
+  regular_file_size(path);  // a pipe would wait for what never comes
   const std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> context(EVP_MD_CTX_new(), EVP_MD_CTX_free);
   bool good = context && EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr) == 1;
   std::ifstream in(path, std::ios::binary);

@@ -1,7 +1,7 @@
 #include <gonio/tools/stability/summary.h>
 #include <gonio/tools/number.h>
 
-#include <gonio/brdf/bytes.h>
+#include <gonio/mapping/bytes.h>
 #include <gonio/fitting/parse_json.h>
 #include <gonio/mapping/error.h>
 

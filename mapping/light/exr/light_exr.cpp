@@ -11,13 +11,13 @@
 #include <ImfTestFile.h>
 #include <ImfVecAttribute.h>
 #include <gonio/mapping/atomic_file.h>
+#include <gonio/mapping/bytes.h>
 #include <gonio/mapping/error.h>
 #include <gonio/mapping/light/exr/light_exr.h>
 #include <gonio/mapping/light/octahedral.h>
 #include <gonio/mapping/light/text_scanner.h>
 
 #include <cmath>
-#include <fstream>
 #include <vector>
 
 namespace gonio {
@@ -149,11 +149,8 @@ Luminaire read(const std::string& name) {
 }
 
 bool is_exr(const std::filesystem::path& path) {
-  try {
-    return Imf::isOpenExrFile(path.c_str());
-  } catch (const std::exception&) {
-    return false;  // unreadable: the text reader says so
-  }
+  const std::string magic = read_bytes(path, 4);
+  return magic.size() == 4 && Imf::isImfMagic(magic.data());
 }
 
 }  // namespace
@@ -205,11 +202,7 @@ bool is_light_file(const std::filesystem::path& path) {
       return false;  // another kind of EXR, or a damaged one
     }
   }
-  std::ifstream stream(path, std::ios::binary);
-  std::string start(1 << 16, '\0');
-  stream.read(start.data(), static_cast<std::streamsize>(start.size()));
-  start.resize(static_cast<std::size_t>(stream.gcount()));
-  return light_format(without_utf16(std::move(start))) != LightFormat::unknown;
+  return light_format(without_utf16(read_bytes(path, 1 << 16))) != LightFormat::unknown;
 }
 
 Luminaire load_any_light(const std::filesystem::path& path, const LightOptions& options,

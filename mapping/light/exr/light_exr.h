@@ -22,8 +22,8 @@ void save_light(const std::filesystem::path& path, const Luminaire& luminaire);
 /// version.
 Luminaire load_light_exr(const std::filesystem::path& path);
 
-/// True if the content is that of a file that load_any_light() reads, whole or not. False for a
-/// file that cannot be read.
+/// True if the content is that of a file that load_any_light() reads, whole or not.
+/// @throws Error if the file cannot be read.
 bool is_light_file(const std::filesystem::path& path);
 
 /// load_light() for all formats: IES, EULUMDAT and the EXR of this library, told by content.

@@ -9,14 +9,15 @@
 
 namespace gonio {
 
-// Every table format is little-endian and is read and written by copying bytes.
+// Every binary format is little-endian and is read and written by copying bytes.
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,
               "gonio reads tables on little-endian only");
 
 /// Size in bytes of a regular file. @throws Error if there is no such file or it is not regular.
 std::uintmax_t regular_file_size(const std::filesystem::path& path);
 
-/// The first `limit` bytes of a regular file, or all of it if it is shorter. @throws Error
+/// The first `limit` bytes of a regular file, or all of it if it is shorter. Every file that is read as bytes
+/// comes through here. @throws Error if the file cannot be read, or is a Git LFS pointer
 std::string read_bytes(const std::filesystem::path& path, std::uintmax_t limit = UINTMAX_MAX);
 
 /// Cursor over a block of bytes that refuses to pass its end. Does not own the bytes.
