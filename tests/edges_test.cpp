@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <regex>
 #include <vector>
 
 #include <gonio/brdf/baseline.h>
@@ -19,6 +20,7 @@
 #include <gonio/fitting/lobe_sampler.h>
 #include <gonio/fitting/model.h>
 #include <gonio/mapping/light/emission.h>
+#include <gonio/mapping/light/exr/light_exr.h>
 #include <gonio/tests/batch_subject.h>
 
 namespace gonio::proof {
@@ -76,12 +78,13 @@ TEST(Edges, Lobes) {
   for (const double theta_i : {0.0, 0.8, 1.5}) expect_sound("lobes", subject_of(lobes), theta_i);
 }
 
-// All measured files: slow, since stacks are built.
+// All measured files: slow, since stacks are built. The files of MERL's format are surrogates that a script writes.
 class MeasuredEdges : public testing::TestWithParam<const char*> {};
 TEST_P(MeasuredEdges, AreSound) {
   const char* data = std::getenv("GONIO_TEST_DATA");
   if (!data) GTEST_SKIP() << "GONIO_TEST_DATA is not set";
   const std::filesystem::path path = std::filesystem::path(data) / GetParam();
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path.string() << " is not there";
   std::vector<double> angles;
   for (const double theta_i : {0.0, 2.0, 10.0, 30.0, 50.0, 70.0, 80.0, 85.0, 88.3}) angles.push_back(theta_i * degree);
   expect_all_sound(GetParam(), std::make_shared<const BrdfTable>(load_table(path)), angles);
@@ -90,8 +93,28 @@ INSTANTIATE_TEST_SUITE_P(Slow, MeasuredEdges,
                          testing::Values("rgl/paper_white_rgb.bsdf", "rgl/satin_rosaline_rgb.bsdf", "rgl/cc_iris_purple_gem_rgb.bsdf",
                                          "rgl/cg_sunflower_rgb.bsdf", "rgl_more/aurora_white_rgb.bsdf", "rgl_more/cc_green_malachite_rgb.bsdf",
                                          "rgl_more/chm_orange_rgb.bsdf", "rgl_more/ilm_solo_m_68_rgb.bsdf", "rgl_more/irid_flake_paint1_rgb.bsdf",
-                                         "rgl_more/vch_silk_blue_rgb.bsdf", "mbsdf/carpaint_blue.mbsdf", "mbsdf/carpaint_red.mbsdf"),
-                         [](const auto& entry) { return std::filesystem::path(entry.param).stem().string(); });
+                                         "rgl_more/vch_silk_blue_rgb.bsdf", "mbsdf/carpaint_blue.mbsdf", "mbsdf/carpaint_red.mbsdf",
+                                         "merl/chrome.binary", "merl/blue-acrylic.binary", "merl/gold-metallic-paint.binary",
+                                         "merl/yellow-matte-plastic.binary"),
+                         [](const auto& entry) { return std::regex_replace(std::filesystem::path(entry.param).stem().string(), std::regex("-"), "_"); });
+
+void expect_emission_sound(const std::string& what, const LightDiagram& diagram) {
+  const EmissionSampler<float> sampler(diagram);
+  Subject subject;
+  subject.sample = [&](const glm::vec3&, const glm::vec2& u) -> std::optional<BsdfSample> {
+    const auto s = sampler.sample(u.x, u.y);
+    if (!(s.pdf > 0)) return std::nullopt;
+    return BsdfSample{s.direction, s.pdf, glm::vec3(s.weight)};
+  };
+  subject.pdf = [&](const glm::vec3&, const glm::vec3& w) { return static_cast<double>(sampler.pdf(w)); };
+  EdgeOptions options;
+  options.domain = Domain::sphere;
+  const EdgeScan scan = scan_edges(subject, 0, options);
+  EXPECT_EQ(scan.bad, 0u) << what << ", " << scan.where_bad;
+  EXPECT_EQ(scan.empty, 0u) << what;
+  EXPECT_LE(scan.pdf_factor, 1.1) << what << ", " << scan.where_pdf;
+  EXPECT_LE(scan.largest_weight, 2) << what << ", " << scan.where_weight;
+}
 
 // A Lambertian opening is dark at its edge, a cone at both poles, and a beam ends at a parallel.
 TEST(Edges, Emission) {
@@ -106,23 +129,21 @@ TEST(Edges, Emission) {
   };
   for (const LightDiagram& d : {luminaire(pi<double> / 2, [](double g) { return 100 * std::cos(g); }),
                                 luminaire(pi<double>, [](double g) { return 100 * std::sin(g) * std::sin(g); }),
-                                luminaire(pi<double>, [](double g) { return g < 2 ? 100 * (2 - g) : 0; })}) {
-    const EmissionSampler<float> sampler(d);
-    Subject subject;
-    subject.sample = [&](const glm::vec3&, const glm::vec2& u) -> std::optional<BsdfSample> {
-      const auto s = sampler.sample(u.x, u.y);
-      if (!(s.pdf > 0)) return std::nullopt;
-      return BsdfSample{s.direction, s.pdf, glm::vec3(s.weight)};
-    };
-    subject.pdf = [&](const glm::vec3&, const glm::vec3& w) { return static_cast<double>(sampler.pdf(w)); };
-    EdgeOptions options;
-    options.domain = Domain::sphere;
-    const EdgeScan scan = scan_edges(subject, 0, options);
-    EXPECT_EQ(scan.bad, 0u) << scan.where_bad;
-    EXPECT_EQ(scan.empty, 0u);
-    EXPECT_LE(scan.pdf_factor, 1.1) << scan.where_pdf;
-    EXPECT_LE(scan.largest_weight, 2) << scan.where_weight;
+                                luminaire(pi<double>, [](double g) { return g < 2 ? 100 * (2 - g) : 0; })})
+    expect_emission_sound("luminaire", d);
+}
+
+TEST(SlowEdges, MeasuredLuminaires) {
+  const char* data = std::getenv("GONIO_TEST_DATA");
+  if (!data) GTEST_SKIP() << "GONIO_TEST_DATA is not set";
+  int sampled = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(std::filesystem::path(data) / "photometric")) {
+    if (!entry.is_regular_file() || !is_light_file(entry.path())) continue;
+    Deviations ignored;
+    expect_emission_sound(entry.path().filename().string(), load_any_light(entry.path(), {}, ignored).diagram);
+    ++sampled;
   }
+  EXPECT_GE(sampled, 40);
 }
 
 // Negative controls: faults within 2^-20 of a side are found, and by the number that is there for them.
