@@ -474,13 +474,17 @@ TEST_F(ToolTest, FilesOfOtherKindsAreNamed) {
 TEST_F(ToolTest, PipesAndPointersAreRefusedByEveryReader) {
   ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
   write("pointer", "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 658992\n");
-  for (const auto& [file, found] : {std::pair("pipe", "pipe: found a pipe or a device, expected a file"),
-                                    std::pair("pointer", "pointer: found a Git LFS pointer in place of the file")}) {
+  for (const auto& [file, found] : {std::pair("pipe", "found a pipe or a device, expected a file"),
+                                    std::pair("pointer", "found a Git LFS pointer in place of the file")}) {
     const std::string name = file;
-    write("mesh.json", "{\"objects\": [{\"mesh\": \"" + name + "\"}]}");
-    for (const std::string verb : {"info NAME", "validate NAME", "convert NAME y.exr", "convert --scene NAME out", "fit NAME -o y.json", "ndf NAME -o y.json",
-                                   "report NAME -o out", "report --merge NAME -o out", "render NAME -o y.exr", "render mesh.json -o y.exr",
-                                   "render --material NAME -o y.exr", "render --environment NAME -o y.exr", "compare --material NAME -o out",
+    const std::string materials = R"({"materials": {"a": {"albedo": 0.5}}, "camera": {"position": [0, -5, 1], "target": [0, 0, 1], "resolution": [4, 4]}, )";
+    write("mesh.json", materials + R"("objects": [{"material": "a", "file": ")" + name + "\"}]}");
+    write("sky.json", materials + R"("environment": {"file": ")" + name + R"("}, "objects": [{"material": "a", "shape": "sphere"}]})");
+    write("lamp.json", materials + R"("lights": [{"file": ")" + name + R"("}], "objects": [{"material": "a", "shape": "sphere"}]})");
+    for (const std::string verb : {"info NAME", "validate NAME", "convert NAME y.exr", "convert --scene NAME -o out --budget 1MiB", "fit NAME -o y.json",
+                                   "ndf NAME -o y.json", "report NAME -o out", "report --merge NAME -o out", "render NAME -o y.exr",
+                                   "render mesh.json -o y.exr", "render sky.json -o y.exr", "render lamp.json -o y.exr",
+                                   "render --material NAME -o y.exr", "compare --material NAME -o out",
                                    "light info NAME", "light validate NAME", "light convert NAME y.ldt"}) {
       std::string command = verb;
       if (const std::size_t at = command.find("NAME"); at != std::string::npos) command.replace(at, 4, name);

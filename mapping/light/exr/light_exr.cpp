@@ -8,8 +8,8 @@
 #include <ImfOutputFile.h>
 #include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
-#include <ImfTestFile.h>
 #include <ImfVecAttribute.h>
+#include <ImfVersion.h>
 #include <gonio/mapping/atomic_file.h>
 #include <gonio/mapping/bytes.h>
 #include <gonio/mapping/error.h>
