@@ -34,9 +34,12 @@ struct Built {
   Diagram<double> diagram;
 };
 
-/// Relative variance of sampling a density by a map of the square to the disk.
+/// What the weights of a density are when it is sampled by a map of the square to the disk.
+struct MapWeights {
+  double mean, relvar;
+};
 template <class Map>
-double map_relvar(const DiskDensity& density, const Map& map) {
+MapWeights map_weights(const DiskDensity& density, const Map& map) {
   constexpr int side = 64;
   double sum = 0, sum2 = 0;
   for (int x = 0; x < side; ++x) {
@@ -50,7 +53,7 @@ double map_relvar(const DiskDensity& density, const Map& map) {
       sum2 += weight * weight;
     }
   }
-  return sum > 0 ? std::max(0.0, sum2 * side * side / (sum * sum) - 1) : 0;
+  return {sum / (side * side), sum > 0 ? std::max(0.0, sum2 * side * side / (sum * sum) - 1) : 0};
 }
 
 /// Diagrams by incident angle, grown until nothing fails or a limit is met.
@@ -73,6 +76,7 @@ class Growth {
     while (split_worst()) {
     }
     estimate_errors();
+    raise_tails();
   }
 
   Grown take() {
@@ -130,11 +134,30 @@ class Growth {
     });
   }
 
-  double relvar(double theta_i, const Built& a, const Built& b, double alpha) const {
+  MapWeights weights(double theta_i, const Built& a, const Built& b, double alpha) const {
     const DiskDensity density = recipe_.density_at(theta_i);
     if (interpolation_ == Interpolation::blend)
-      return map_relvar(density, Blend<double>(a.diagram, b.diagram, alpha));
-    return map_relvar(density, Displacement<double>(a.diagram, b.diagram, alpha));
+      return map_weights(density, Blend<double>(a.diagram, b.diagram, alpha));
+    return map_weights(density, Displacement<double>(a.diagram, b.diagram, alpha));
+  }
+
+  /// Recipe::diagram() has raised every diagram to its own table's density next to the horizon. Half way to its neighbours the
+  /// table may reflect more there.
+  void raise_tails() {
+    std::vector<Interval> intervals;
+    for (Interval it = built_.begin(); std::next(it) != built_.end(); ++it) intervals.push_back(it);
+    std::vector<double> means(intervals.size());
+    parallel_for(intervals.size(), [&](std::size_t k) {
+      const Interval a = intervals[k], b = std::next(a);
+      means[k] = weights((a->first + b->first) / 2, a->second, b->second, 0.5).mean;
+    });
+    parallel_for(built_.size(), [&](std::size_t k) {
+      Built& own = std::next(built_.begin(), static_cast<std::ptrdiff_t>(k))->second;
+      for (const std::size_t interval : {k - 1, k})
+        if (interval < intervals.size() && means[interval] > 0)
+          recipe_.raise((intervals[interval]->first + std::next(intervals[interval])->first) / 2, means[interval], own.grid);
+      own.diagram = Diagram<double>(own.grid);
+    });
   }
 
   void estimate_errors() {
@@ -147,7 +170,7 @@ class Growth {
     parallel_for(estimate.size(), [&](std::size_t k) {
       const Interval a = unknown[k / count], b = std::next(a);
       const double alpha = probes[k % count];
-      estimate[k] = relvar((1 - alpha) * a->first + alpha * b->first, a->second, b->second, alpha);
+      estimate[k] = weights((1 - alpha) * a->first + alpha * b->first, a->second, b->second, alpha).relvar;
     });
     for (std::size_t k = 0; k < unknown.size(); ++k) {
       const auto worst = std::max_element(estimate.begin() + k * count, estimate.begin() + (k + 1) * count);
@@ -189,7 +212,7 @@ class Growth {
       // Where a diagram of its own is hardly better than the interpolation was, more angles do not
       // help: the size of the diagram or the noise of the table is the limit there.
       const Built& own = built_.at(s.middle);
-      const double floor = relvar(s.middle, own, own, 0) * limits_.weight(s.middle);
+      const double floor = weights(s.middle, own, own, 0).relvar * limits_.weight(s.middle);
       if (floor > s.error / 1.5) settled_.insert({s.lower, s.middle});
       error_.erase(s.lower);
     }

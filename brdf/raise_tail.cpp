@@ -9,9 +9,9 @@ namespace gonio::detail {
 namespace {
 
 constexpr double tail_weight = 1.1;
-// Where less than this share of the mass of the mean meridian is further out, a row is raised.
-constexpr double tail_share = 1e-4;
-// No more than this share of the mass of the mean meridian is added to one in its last cell.
+// Where less than this share of the mass of the meridian, or of the mean one, is further out, a row is raised.
+constexpr double tail_share = 1e-3;
+// No more than this share of its mass, or of that of the mean one, is added to a meridian in its last cell.
 constexpr double horizon_share = 1e-3;
 
 double wanted_at(const DiskDensity& density, Polar<double> at) {
@@ -23,6 +23,8 @@ double wanted_at(const DiskDensity& density, Polar<double> at) {
 struct Masses {
   std::vector<double> beyond;
   double mean;
+
+  double of_meridian(std::size_t i, std::size_t rows) const { return std::max(mean, beyond[i * rows]); }
 };
 Masses masses(const DiagramGrid& grid) {
   const std::size_t rows = grid.r.size();
@@ -43,7 +45,7 @@ void raise_inner_rows(const DiskDensity& density, const Masses& m, DiagramGrid& 
   const std::size_t count = grid.phi.size(), rows = grid.r.size();
   for (std::size_t i = 0; i < count; ++i) {
     const double phi = grid.phi[i], before = grid.phi[i > 0 ? i - 1 : i], next = grid.phi[std::min(i + 1, count - 1)];
-    for (std::size_t j = rows - 2; j > 0 && m.beyond[i * rows + j] < tail_share * m.mean; --j)
+    for (std::size_t j = rows - 2; j > 0 && m.beyond[i * rows + j] < tail_share * m.of_meridian(i, rows); --j)
       for (const double r : {grid.r[j], (grid.r[j] + grid.r[j + 1]) / 2})
         for (const double angle : {(before + phi) / 2, phi, (phi + next) / 2})
           grid.at(i, j) = std::max(grid.at(i, j), wanted_at(density, {r, angle}));
@@ -51,7 +53,7 @@ void raise_inner_rows(const DiskDensity& density, const Masses& m, DiagramGrid& 
 }
 
 /// The last row, where densities fall to 0: to what the last cells need at all distances from the horizon.
-void raise_horizon(const DiskDensity& density, double most, DiagramGrid& grid) {
+void raise_horizon(const DiskDensity& density, const Masses& m, DiagramGrid& grid) {
   constexpr int steps = 24;  // from a meridian to the next
   const std::size_t last = grid.r.size() - 1, count = grid.phi.size();
   const double h = 1 - grid.r[last - 1];
@@ -65,7 +67,7 @@ void raise_horizon(const DiskDensity& density, double most, DiagramGrid& grid) {
       wanted[i] = std::max(wanted[i], end), wanted[next] = std::max(wanted[next], end);
     }
   }
-  for (std::size_t i = 0; i < count; ++i) grid.at(i, last) = std::max(grid.at(i, last), std::min(wanted[i], most / h));
+  for (std::size_t i = 0; i < count; ++i) grid.at(i, last) = std::max(grid.at(i, last), std::min(wanted[i], horizon_share * m.of_meridian(i, last + 1) / h));
 }
 
 }  // namespace
@@ -73,7 +75,7 @@ void raise_horizon(const DiskDensity& density, double most, DiagramGrid& grid) {
 void raise_tail(const DiskDensity& density, DiagramGrid& grid) {
   const Masses m = masses(grid);
   raise_inner_rows(density, m, grid);
-  raise_horizon(density, horizon_share * m.mean, grid);
+  raise_horizon(density, m, grid);
 }
 
 }  // namespace gonio::detail

@@ -26,6 +26,10 @@ class Recipe {
   /// With the share of a cosine lobe; a cosine lobe alone where the table reflects nothing.
   DiagramGrid diagram(double theta_i) const;
 
+  /// Raises a normalised diagram next to the horizon to the table's density at an incident angle (raise_tail()), where `mean` is
+  /// its mass.
+  void raise(double theta_i, double mean, DiagramGrid& grid) const;
+
   Chart chart() const { return chart_; }
   const BrdfTable& table() const { return table_; }
 
