@@ -1,5 +1,5 @@
-#include <gonio/mapping/atomic_file.h>
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/atomic_file.h>
+#include <gonio/mapping/base/error.h>
 #include <gtest/gtest.h>
 
 #include "table_files.h"

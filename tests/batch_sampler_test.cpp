@@ -13,7 +13,7 @@
 #include <gonio/brdf/proof/gallery.h>
 #include <gonio/brdf/proof/gtest.h>
 #include <gonio/brdf/proof/random.h>
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/error.h>
 #include <gonio/tests/batch_subject.h>
 #include <gonio/tests/batch_targets.h>
 

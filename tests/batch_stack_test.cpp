@@ -10,7 +10,7 @@
 #include <gonio/brdf/proof/chi_square.h>
 #include <gonio/brdf/proof/gallery.h>
 #include <gonio/brdf/proof/random.h>
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/error.h>
 #include <gonio/tests/batch_targets.h>
 
 namespace gonio {

@@ -9,10 +9,10 @@
 #include <set>
 #include <string>
 
-#include <gonio/brdf/compact_bsdf.h>
+#include <gonio/brdf/bsdf/compact_bsdf.h>
 #include <gonio/brdf/proof/gallery.h>
-#include <gonio/brdf/sampler.h>
-#include <gonio/mapping/error.h>
+#include <gonio/brdf/bsdf/sampler.h>
+#include <gonio/mapping/base/error.h>
 
 namespace gonio {
 namespace {

@@ -8,8 +8,8 @@
 #include <sstream>
 
 #include <gonio/brdf/proof/random.h>
-#include <gonio/mapping/error.h>
-#include <gonio/mapping/hemisphere.h>
+#include <gonio/mapping/base/error.h>
+#include <gonio/mapping/charts/hemisphere.h>
 
 namespace gonio::proof {
 namespace {

@@ -8,7 +8,7 @@
 
 #include <gonio/brdf/proof/gallery.h>
 #include <gonio/brdf/proof/random.h>
-#include <gonio/brdf/sampler.h>
+#include <gonio/brdf/bsdf/sampler.h>
 
 namespace gonio::proof {
 namespace {

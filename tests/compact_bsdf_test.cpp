@@ -1,8 +1,8 @@
-#include <gonio/brdf/compact_bsdf.h>
-#include <gonio/brdf/fit_compact.h>
+#include <gonio/brdf/bsdf/compact_bsdf.h>
+#include <gonio/brdf/build/fit_compact.h>
 #include <gonio/brdf/proof/gallery.h>
 #include <gonio/brdf/proof/gtest.h>
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/error.h>
 
 #include <gtest/gtest.h>
 

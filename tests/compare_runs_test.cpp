@@ -1,7 +1,7 @@
 #include <gonio/tools/render/compare_runs.h>
 
-#include <gonio/fitting/synth.h>
-#include <gonio/mapping/error.h>
+#include <gonio/fitting/model/synth.h>
+#include <gonio/mapping/base/error.h>
 #include <gonio/tools/render/difference.h>
 #include <gonio/tools/render/read_scene.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include <gonio/mapping/concentric.h>
+#include <gonio/mapping/charts/concentric.h>
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include <gonio/brdf/proof/gallery.h>
-#include <gonio/brdf/compact_bsdf.h>
-#include <gonio/brdf/sampler.h>
+#include <gonio/brdf/bsdf/compact_bsdf.h>
+#include <gonio/brdf/bsdf/sampler.h>
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <gonio/brdf/proof/random.h>
-#include <gonio/mapping/packed_stack.h>
+#include <gonio/mapping/stack/packed_stack.h>
 
 namespace gonio {
 namespace {

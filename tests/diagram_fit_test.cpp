@@ -1,10 +1,10 @@
-#include <gonio/mapping/diagram_fit.h>
+#include <gonio/mapping/diagram/diagram_fit.h>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/error.h>
 
 namespace gonio {
 namespace {

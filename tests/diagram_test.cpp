@@ -1,11 +1,11 @@
-#include <gonio/mapping/diagram.h>
+#include <gonio/mapping/diagram/diagram.h>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/error.h>
 
 namespace gonio {
 namespace {

@@ -1,6 +1,6 @@
 #include <gonio/brdf/exr/disk_image_file.h>
 #include <gonio/brdf/exr/stack_file.h>
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/error.h>
 #include <gtest/gtest.h>
 
 #include <ImfArray.h>

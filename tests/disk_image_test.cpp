@@ -1,5 +1,5 @@
 #include <gonio/brdf/ndf/disk_image.h>
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/error.h>
 #include <gtest/gtest.h>
 
 #include <limits>

@@ -12,13 +12,13 @@
 #include <regex>
 #include <vector>
 
-#include <gonio/brdf/baseline.h>
+#include <gonio/brdf/proof/baseline.h>
 #include <gonio/brdf/batch/batch_sampler.h>
-#include <gonio/brdf/fit_compact.h>
+#include <gonio/brdf/build/fit_compact.h>
 #include <gonio/brdf/proof/gallery.h>
-#include <gonio/fitting/fit.h>
-#include <gonio/fitting/lobe_sampler.h>
-#include <gonio/fitting/model.h>
+#include <gonio/fitting/fit/fit.h>
+#include <gonio/fitting/sampling/lobe_sampler.h>
+#include <gonio/fitting/model/model.h>
 #include <gonio/mapping/light/emission.h>
 #include <gonio/mapping/light/exr/light_exr.h>
 #include <gonio/tests/batch_subject.h>

@@ -1,8 +1,8 @@
 #include <gonio/tools/render/environment.h>
 
-#include <gonio/brdf/table.h>
-#include <gonio/mapping/error.h>
-#include <gonio/mapping/hemisphere.h>
+#include <gonio/brdf/table/table.h>
+#include <gonio/mapping/base/error.h>
+#include <gonio/mapping/charts/hemisphere.h>
 #include <gonio/tools/render/sobol.h>
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
-#include <gonio/mapping/error.h>
-#include <gonio/mapping/light/eulumdat.h>
-#include <gonio/mapping/light/text_scanner.h>
+#include <gonio/mapping/base/error.h>
+#include <gonio/mapping/light/files/eulumdat.h>
+#include <gonio/mapping/light/files/text_scanner.h>
 #include <gtest/gtest.h>
 
 #include <chrono>

@@ -2,7 +2,7 @@
 
 #include <gonio/brdf/exr/disk_image_file.h>
 #include <gonio/brdf/exr/stack_file.h>
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/error.h>
 #include <gonio/tests/table_files.h>
 #include <gtest/gtest.h>
 

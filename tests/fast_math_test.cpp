@@ -1,4 +1,4 @@
-#include <gonio/mapping/fast_math.h>
+#include <gonio/mapping/numeric/fast_math.h>
 #include <gtest/gtest.h>
 
 #include <cmath>

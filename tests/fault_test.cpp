@@ -1,8 +1,8 @@
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/brdf/proof/gallery.h>
-#include <gonio/brdf/write.h>
-#include <gonio/mapping/error.h>
-#include <gonio/mapping/packed_stack.h>
+#include <gonio/brdf/resample/table_resample.h>
+#include <gonio/mapping/base/error.h>
+#include <gonio/mapping/stack/packed_stack.h>
 
 #include <fenv.h>
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
-#include <gonio/brdf/fit_compact.h>
+#include <gonio/brdf/build/fit_compact.h>
 #include <gonio/brdf/proof/measure.h>
-#include <gonio/brdf/sampler.h>
-#include <gonio/fitting/synth.h>
-#include <gonio/mapping/error.h>
+#include <gonio/brdf/bsdf/sampler.h>
+#include <gonio/fitting/model/synth.h>
+#include <gonio/mapping/base/error.h>
 #include <gonio/tests/table_files.h>
 
 #include <gtest/gtest.h>

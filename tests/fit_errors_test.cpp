@@ -1,5 +1,5 @@
-#include <gonio/fitting/delta_e.h>
-#include <gonio/fitting/errors.h>
+#include <gonio/fitting/fit/delta_e.h>
+#include <gonio/fitting/fit/errors.h>
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,10 +1,10 @@
 // Runs `gonio fit`, and the verbs that read what it writes, as a user does.
 
-#include <gonio/mapping/bytes.h>
+#include <gonio/mapping/base/bytes.h>
 #include <gonio/brdf/exr/stack_file.h>
-#include <gonio/brdf/table.h>
-#include <gonio/fitting/synth.h>
-#include <gonio/mapping/error.h>
+#include <gonio/brdf/table/table.h>
+#include <gonio/fitting/model/synth.h>
+#include <gonio/mapping/base/error.h>
 #include <gonio/tests/table_files.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>

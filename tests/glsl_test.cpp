@@ -4,7 +4,7 @@
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 #include <GL/glcorearb.h>
-#include <gonio/mapping/light/light_texture.h>
+#include <gonio/mapping/light/texture/light_texture.h>
 #include <gtest/gtest.h>
 
 #include <chrono>

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
-#include <gonio/brdf/grid.h>
-#include <gonio/brdf/table.h>
-#include <gonio/mapping/error.h>
+#include <gonio/brdf/formats/mbsdf.h>
+#include <gonio/brdf/table/table.h>
+#include <gonio/mapping/base/error.h>
 #include <gtest/gtest.h>
 
 #include "table_files.h"

@@ -1,4 +1,4 @@
-#include <gonio/mapping/half_vector.h>
+#include <gonio/mapping/charts/half_vector.h>
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include <gonio/mapping/hemisphere.h>
+#include <gonio/mapping/charts/hemisphere.h>
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include <gonio/brdf/incidence_profile.h>
+#include <gonio/brdf/build/incidence_profile.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 #include <numeric>
 #include <thread>
 
-#include <gonio/mapping/concentric.h>
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/charts/concentric.h>
+#include <gonio/mapping/base/error.h>
 
 namespace gonio {
 namespace {

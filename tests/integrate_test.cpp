@@ -1,10 +1,10 @@
 // The adapters that docs/integrate.md shows, as the renderers would call them.
 
-#include <gonio/brdf/albedo.h>
-#include <gonio/brdf/material_hints.h>
+#include <gonio/brdf/table/albedo.h>
+#include <gonio/brdf/bsdf/material_hints.h>
 #include <gonio/docs/examples/mitsuba_bsdf.h>
 #include <gonio/docs/examples/pbrt_bxdf.h>
-#include <gonio/fitting/synth.h>
+#include <gonio/fitting/model/synth.h>
 #include <gtest/gtest.h>
 
 #include <memory>

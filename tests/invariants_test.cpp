@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include <gonio/brdf/baseline.h>
+#include <gonio/brdf/proof/baseline.h>
 #include <gonio/brdf/proof/gallery.h>
-#include <gonio/brdf/sampler.h>
+#include <gonio/brdf/bsdf/sampler.h>
 
 namespace gonio::proof {
 namespace {

@@ -1,6 +1,6 @@
-#include <gonio/mapping/error.h>
-#include <gonio/mapping/light/light_texture.h>
-#include <gonio/mapping/light/solid.h>
+#include <gonio/mapping/base/error.h>
+#include <gonio/mapping/light/texture/light_texture.h>
+#include <gonio/mapping/light/texture/solid.h>
 #include <gtest/gtest.h>
 
 #include <cstdio>

@@ -1,10 +1,10 @@
 #include <ceres/gradient_checker.h>
-#include <gonio/brdf/merl.h>
-#include <gonio/fitting/fit.h>
-#include <gonio/fitting/linear_start.h>
-#include <gonio/fitting/residual.h>
-#include <gonio/fitting/synth.h>
-#include <gonio/mapping/error.h>
+#include <gonio/brdf/formats/merl.h>
+#include <gonio/fitting/fit/fit.h>
+#include <gonio/fitting/fit/linear_start.h>
+#include <gonio/fitting/fit/residual.h>
+#include <gonio/fitting/model/synth.h>
+#include <gonio/mapping/base/error.h>
 #include <gtest/gtest.h>
 
 #include <glm/vec2.hpp>

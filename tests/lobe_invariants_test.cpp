@@ -1,8 +1,8 @@
 // The harness of gonio::proof on every lobe's own sample and pdf, and on LobeSampler.
 
 #include <gonio/brdf/proof/gtest.h>
-#include <gonio/fitting/lobe_sampler.h>
-#include <gonio/fitting/synth.h>
+#include <gonio/fitting/sampling/lobe_sampler.h>
+#include <gonio/fitting/model/synth.h>
 
 #include <algorithm>
 #include <memory>

@@ -1,8 +1,8 @@
-#include <gonio/fitting/fit.h>
-#include <gonio/fitting/lobe_sampler.h>
-#include <gonio/fitting/proposal.h>
-#include <gonio/fitting/synth.h>
-#include <gonio/mapping/error.h>
+#include <gonio/fitting/fit/fit.h>
+#include <gonio/fitting/sampling/lobe_sampler.h>
+#include <gonio/fitting/sampling/proposal.h>
+#include <gonio/fitting/model/synth.h>
+#include <gonio/mapping/base/error.h>
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
 #include <ceres/jet.h>
-#include <gonio/fitting/model.h>
+#include <gonio/fitting/model/model.h>
 #include <gtest/gtest.h>
 
 #include <cmath>

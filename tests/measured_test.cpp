@@ -1,8 +1,8 @@
 // Which cells of a table were measured, and how far from the normal.
 
-#include <gonio/brdf/measured_to.h>
-#include <gonio/brdf/repair.h>
-#include <gonio/fitting/synth.h>
+#include <gonio/brdf/table/measured_to.h>
+#include <gonio/brdf/formats/repair.h>
+#include <gonio/fitting/model/synth.h>
 #include <gtest/gtest.h>
 
 #include "table_files.h"

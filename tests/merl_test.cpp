@@ -1,8 +1,8 @@
 #define GLM_ENABLE_EXPERIMENTAL  // glm/gtx, for rotations
 #include <gmock/gmock.h>
-#include <gonio/brdf/albedo.h>
-#include <gonio/brdf/merl.h>
-#include <gonio/mapping/error.h>
+#include <gonio/brdf/table/albedo.h>
+#include <gonio/brdf/formats/merl.h>
+#include <gonio/mapping/base/error.h>
 #include <gtest/gtest.h>
 
 #include <glm/geometric.hpp>

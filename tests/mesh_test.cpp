@@ -1,7 +1,7 @@
 #include <gonio/tools/render/mesh.h>
 
-#include <gonio/mapping/error.h>
-#include <gonio/mapping/hemisphere.h>
+#include <gonio/mapping/base/error.h>
+#include <gonio/mapping/charts/hemisphere.h>
 #include <gonio/tests/table_files.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>

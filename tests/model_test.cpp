@@ -1,5 +1,5 @@
-#include <gonio/fitting/model.h>
-#include <gonio/mapping/error.h>
+#include <gonio/fitting/model/model.h>
+#include <gonio/mapping/base/error.h>
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-#include <gonio/mapping/packed_stack.h>
+#include <gonio/mapping/stack/packed_stack.h>
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <random>
 #include <string>
 
-#include <gonio/mapping/code16.h>
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/numeric/code16.h>
+#include <gonio/mapping/base/error.h>
 
 namespace gonio {
 namespace {

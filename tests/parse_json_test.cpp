@@ -1,6 +1,6 @@
-#include <gonio/fitting/parse_json.h>
+#include <gonio/fitting/model/parse_json.h>
 
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/error.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
-#include <gonio/brdf/fit_compact.h>
+#include <gonio/brdf/build/fit_compact.h>
 #include <gonio/tools/render/path_tracer.h>
 
-#include <gonio/fitting/synth.h>
+#include <gonio/fitting/model/synth.h>
 #include <gonio/tests/table_files.h>
 #include <gonio/tools/render/film.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-#include <gonio/mapping/diagram.h>
-#include <gonio/mapping/hemisphere.h>
+#include <gonio/mapping/diagram/diagram.h>
+#include <gonio/mapping/charts/hemisphere.h>
 
 #include <gtest/gtest.h>
 

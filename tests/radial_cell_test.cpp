@@ -1,4 +1,4 @@
-#include <gonio/mapping/radial_cell.h>
+#include <gonio/mapping/diagram/radial_cell.h>
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include <gonio/brdf/ndf/radial_ndf.h>
 #include <gonio/brdf/ndf/shadowing.h>
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/error.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include <gonio/tools/render/read_scene.h>
 
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/error.h>
 #include <gonio/tests/table_files.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

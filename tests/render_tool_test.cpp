@@ -1,6 +1,6 @@
 // Runs the verbs render and compare of the program GONIO_TOOL as a user does.
 
-#include <gonio/fitting/model.h>
+#include <gonio/fitting/model/model.h>
 #include <gonio/tests/table_files.h>
 #include <gonio/tools/render/exr_image.h>
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
 // Real materials through the writer and back: slow, since stacks are built.
 
-#include <gonio/brdf/fit_compact.h>
-#include <gonio/brdf/rgl_write.h>
-#include <gonio/brdf/validate.h>
-#include <gonio/fitting/synth.h>
+#include <gonio/brdf/build/fit_compact.h>
+#include <gonio/brdf/formats/rgl/rgl_write.h>
+#include <gonio/brdf/table/validate.h>
+#include <gonio/fitting/model/synth.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <gonio/brdf/rgl.h>
-#include <gonio/brdf/rgl_resample.h>
+#include <gonio/brdf/formats/rgl/rgl.h>
+#include <gonio/brdf/resample/rgl_resample.h>
 
 #include <cmath>
 #include <glm/common.hpp>

@@ -1,7 +1,7 @@
 #define GLM_ENABLE_EXPERIMENTAL  // glm/gtx, for rotations
 #include <gmock/gmock.h>
-#include <gonio/brdf/rgl.h>
-#include <gonio/mapping/error.h>
+#include <gonio/brdf/formats/rgl/rgl.h>
+#include <gonio/mapping/base/error.h>
 #include <gtest/gtest.h>
 
 #include <glm/geometric.hpp>

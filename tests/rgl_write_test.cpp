@@ -1,12 +1,12 @@
 #include <gmock/gmock.h>
 #include <gonio/brdf/ndf/radial_ndf.h>
-#include <gonio/brdf/rgl_write.h>
-#include <gonio/brdf/spectrum.h>
-#include <gonio/brdf/table.h>
-#include <gonio/brdf/tensor_file.h>
-#include <gonio/brdf/validate.h>
-#include <gonio/fitting/model.h>
-#include <gonio/mapping/error.h>
+#include <gonio/brdf/formats/rgl/rgl_write.h>
+#include <gonio/brdf/formats/rgl/spectrum.h>
+#include <gonio/brdf/table/table.h>
+#include <gonio/brdf/formats/rgl/tensor_file.h>
+#include <gonio/brdf/table/validate.h>
+#include <gonio/fitting/model/model.h>
+#include <gonio/mapping/base/error.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

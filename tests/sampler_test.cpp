@@ -1,6 +1,6 @@
-#include <gonio/brdf/baseline.h>
+#include <gonio/brdf/proof/baseline.h>
 #include <gonio/brdf/proof/measure.h>
-#include <gonio/brdf/sampler.h>
+#include <gonio/brdf/bsdf/sampler.h>
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <thread>
 
 #include <gonio/brdf/proof/random.h>
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/error.h>
 
 namespace gonio {
 namespace {

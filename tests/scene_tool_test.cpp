@@ -1,9 +1,9 @@
 // `gonio convert --scene`, run as a user does.
 
-#include <gonio/mapping/bytes.h>
+#include <gonio/mapping/base/bytes.h>
 #include <gonio/brdf/exr/stack_file.h>
-#include <gonio/brdf/incidence_profile.h>
-#include <gonio/fitting/synth.h>
+#include <gonio/brdf/build/incidence_profile.h>
+#include <gonio/fitting/model/synth.h>
 #include <gonio/tests/table_files.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>

@@ -1,4 +1,4 @@
-#include <gonio/mapping/solid_angle.h>
+#include <gonio/mapping/sphere/solid_angle.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

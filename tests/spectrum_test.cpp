@@ -1,4 +1,4 @@
-#include <gonio/brdf/spectrum.h>
+#include <gonio/brdf/formats/rgl/spectrum.h>
 #include <gtest/gtest.h>
 
 namespace gonio {

@@ -1,8 +1,8 @@
 #include <gonio/brdf/proof/chi_square.h>
 #include <gonio/brdf/proof/coherence.h>
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/error.h>
 #include <gonio/mapping/light/emission.h>
-#include <gonio/mapping/sphere.h>
+#include <gonio/mapping/sphere/sphere.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include <gonio/brdf/split_budget.h>
+#include <gonio/brdf/build/split_budget.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/error.h>
 
 namespace gonio {
 namespace {

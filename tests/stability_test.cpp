@@ -10,8 +10,8 @@
 #include <type_traits>
 
 #include <gonio/brdf/proof/random.h>
-#include <gonio/mapping/diagram.cpp>  // for Diagram<OperationCounter>
-#include <gonio/mapping/monotone_root.h>
+#include <gonio/mapping/diagram/diagram.cpp>  // for Diagram<OperationCounter>
+#include <gonio/mapping/numeric/monotone_root.h>
 #include <gonio/tools/stability/figures.h>
 
 namespace gonio {

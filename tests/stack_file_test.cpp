@@ -11,9 +11,9 @@
 #include <ImfRgbaFile.h>
 #include <ImfStringAttribute.h>
 #include <ImfTiledRgbaFile.h>
-#include <gonio/mapping/bytes.h>
+#include <gonio/mapping/base/bytes.h>
 #include <gonio/brdf/exr/stack_file.h>
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/error.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 

@@ -1,12 +1,12 @@
-#include <gonio/mapping/stack.h>
+#include <gonio/mapping/stack/stack.h>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include <gonio/mapping/error.h>
-#include <gonio/mapping/monotone_root.h>
+#include <gonio/mapping/base/error.h>
+#include <gonio/mapping/numeric/monotone_root.h>
 
 namespace gonio {
 namespace {

@@ -1,5 +1,5 @@
-#include <gonio/fitting/synth.h>
-#include <gonio/mapping/error.h>
+#include <gonio/fitting/model/synth.h>
+#include <gonio/mapping/base/error.h>
 #include <gtest/gtest.h>
 
 #include <cmath>

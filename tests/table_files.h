@@ -1,7 +1,7 @@
 #pragma once
 
-#include <gonio/brdf/grid.h>
-#include <gonio/brdf/merl.h>
+#include <gonio/brdf/formats/mbsdf.h>
+#include <gonio/brdf/formats/merl.h>
 
 #include <cmath>
 #include <cstdint>

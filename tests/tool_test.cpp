@@ -1,8 +1,8 @@
 // Runs the program GONIO_TOOL as a user does.
 
-#include <gonio/brdf/albedo.h>
-#include <gonio/brdf/build.h>
-#include <gonio/mapping/bytes.h>
+#include <gonio/brdf/table/albedo.h>
+#include <gonio/brdf/build/build_stack.h>
+#include <gonio/mapping/base/bytes.h>
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/tests/table_files.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
-#include <gonio/brdf/rgl.h>
-#include <gonio/brdf/validate.h>
+#include <gonio/brdf/formats/rgl/rgl.h>
+#include <gonio/brdf/table/validate.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include <gonio/brdf/warp2d.h>
+#include <gonio/brdf/formats/rgl/warp2d.h>
 #include <gtest/gtest.h>
 
 #include <cmath>

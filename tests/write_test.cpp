@@ -1,6 +1,6 @@
-#include <gonio/brdf/albedo.h>
-#include <gonio/brdf/write.h>
-#include <gonio/mapping/error.h>
+#include <gonio/brdf/table/albedo.h>
+#include <gonio/brdf/resample/table_resample.h>
+#include <gonio/mapping/base/error.h>
 #include <gtest/gtest.h>
 
 #include "table_files.h"

@@ -1,6 +1,6 @@
 #include <gonio/tools/check_not_input.h>
 
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/error.h>
 
 namespace gonio {
 namespace {

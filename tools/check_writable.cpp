@@ -1,4 +1,4 @@
-#include <gonio/mapping/atomic_file.h>
+#include <gonio/mapping/base/atomic_file.h>
 #include <gonio/tools/check_writable.h>
 
 namespace gonio {

@@ -1,8 +1,8 @@
 #include <gonio/brdf/exr/stack_file.h>
-#include <gonio/brdf/sniff.h>
-#include <gonio/brdf/write.h>
-#include <gonio/fitting/synth.h>
-#include <gonio/mapping/error.h>
+#include <gonio/brdf/formats/sniff.h>
+#include <gonio/brdf/resample/table_resample.h>
+#include <gonio/fitting/model/synth.h>
+#include <gonio/mapping/base/error.h>
 #include <gonio/tools/check_not_input.h>
 #include <gonio/tools/check_writable.h>
 #include <gonio/tools/convert.h>

@@ -1,9 +1,9 @@
 #include <gonio/brdf/exr/stack_file.h>
-#include <gonio/brdf/rgl_resample.h>
-#include <gonio/brdf/rgl_write.h>
-#include <gonio/brdf/sniff.h>
-#include <gonio/fitting/model.h>
-#include <gonio/mapping/error.h>
+#include <gonio/brdf/resample/rgl_resample.h>
+#include <gonio/brdf/formats/rgl/rgl_write.h>
+#include <gonio/brdf/formats/sniff.h>
+#include <gonio/fitting/model/model.h>
+#include <gonio/mapping/base/error.h>
 #include <gonio/tools/convert_rgl.h>
 #include <gonio/tools/input.h>
 #include <gonio/tools/progress.h>

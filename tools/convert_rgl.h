@@ -1,6 +1,6 @@
 #pragma once
 
-#include <gonio/brdf/cells.h>
+#include <gonio/brdf/formats/cell_policies.h>
 
 #include <filesystem>
 

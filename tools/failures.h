@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/error.h>
 
 namespace gonio {
 

@@ -1,7 +1,7 @@
 #include <gonio/brdf/exr/stack_file.h>
-#include <gonio/fitting/fit_json.h>
-#include <gonio/mapping/atomic_file.h>
-#include <gonio/mapping/error.h>
+#include <gonio/fitting/fit/fit_json.h>
+#include <gonio/mapping/base/atomic_file.h>
+#include <gonio/mapping/base/error.h>
 #include <gonio/tools/check_not_input.h>
 #include <gonio/tools/check_writable.h>
 #include <gonio/tools/failures.h>

@@ -1,6 +1,6 @@
-#include <gonio/brdf/compact_quality.h>
-#include <gonio/fitting/brdf_function.h>
-#include <gonio/fitting/lobe_sampler.h>
+#include <gonio/brdf/build/compact_quality.h>
+#include <gonio/fitting/fit/brdf_function.h>
+#include <gonio/fitting/sampling/lobe_sampler.h>
 #include <gonio/tools/front.h>
 #include <gonio/tools/report/timing.h>
 

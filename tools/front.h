@@ -1,7 +1,7 @@
 #pragma once
 
-#include <gonio/brdf/fit_compact.h>
-#include <gonio/brdf/table.h>
+#include <gonio/brdf/build/fit_compact.h>
+#include <gonio/brdf/table/table.h>
 #include <gonio/tools/table_fits.h>
 
 #include <cstddef>

@@ -1,10 +1,10 @@
-#include <gonio/brdf/albedo.h>
-#include <gonio/mapping/bytes.h>
+#include <gonio/brdf/table/albedo.h>
+#include <gonio/mapping/base/bytes.h>
 #include <gonio/brdf/exr/stack_file.h>
-#include <gonio/brdf/flat_from.h>
-#include <gonio/brdf/measured_to.h>
-#include <gonio/fitting/model.h>
-#include <gonio/mapping/error.h>
+#include <gonio/brdf/table/flat_from.h>
+#include <gonio/brdf/table/measured_to.h>
+#include <gonio/fitting/model/model.h>
+#include <gonio/mapping/base/error.h>
 #include <gonio/tools/failures.h>
 #include <gonio/tools/info.h>
 #include <gonio/tools/input.h>

@@ -1,5 +1,5 @@
-#include <gonio/mapping/bytes.h>
-#include <gonio/fitting/synth.h>
+#include <gonio/mapping/base/bytes.h>
+#include <gonio/fitting/model/synth.h>
 #include <gonio/tools/input.h>
 
 #include <cstdio>

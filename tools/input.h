@@ -1,7 +1,7 @@
 #pragma once
 
-#include <gonio/brdf/table.h>
-#include <gonio/fitting/model.h>
+#include <gonio/brdf/table/table.h>
+#include <gonio/fitting/model/model.h>
 
 #include <filesystem>
 

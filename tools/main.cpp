@@ -1,4 +1,4 @@
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/error.h>
 #include <gonio/tools/convert.h>
 #include <gonio/tools/fit.h>
 #include <gonio/tools/info.h>

@@ -1,11 +1,11 @@
 #include <gonio/tools/ndf.h>
 
-#include <gonio/mapping/atomic_file.h>
+#include <gonio/mapping/base/atomic_file.h>
 #include <gonio/brdf/exr/disk_image_file.h>
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/brdf/ndf/radial_ndf.h>
 #include <gonio/brdf/ndf/shadowing.h>
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/error.h>
 #include <gonio/tools/check_not_input.h>
 #include <gonio/tools/input.h>
 #include <gonio/tools/ndf/picture.h>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <gonio/brdf/build.h>
+#include <gonio/brdf/build/build_stack.h>
 
 #include <CLI/App.hpp>
 #include <cstddef>

@@ -1,6 +1,6 @@
-#include <gonio/mapping/bytes.h>
-#include <gonio/fitting/parse_json.h>
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/bytes.h>
+#include <gonio/fitting/model/parse_json.h>
+#include <gonio/mapping/base/error.h>
 #include <gonio/tools/scene.h>
 
 #include <cmath>

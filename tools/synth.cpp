@@ -1,5 +1,5 @@
-#include <gonio/fitting/synth.h>
-#include <gonio/mapping/error.h>
+#include <gonio/fitting/model/synth.h>
+#include <gonio/mapping/base/error.h>
 #include <gonio/tools/check_not_input.h>
 #include <gonio/tools/options.h>
 #include <gonio/tools/progress.h>

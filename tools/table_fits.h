@@ -1,8 +1,8 @@
 #pragma once
 
-#include <gonio/brdf/table.h>
-#include <gonio/fitting/errors.h>
-#include <gonio/fitting/fit.h>
+#include <gonio/brdf/table/table.h>
+#include <gonio/fitting/fit/errors.h>
+#include <gonio/fitting/fit/fit.h>
 
 #include <cstddef>
 #include <vector>

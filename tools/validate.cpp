@@ -1,9 +1,9 @@
 #include <gonio/brdf/exr/stack_file.h>
-#include <gonio/brdf/sniff.h>
-#include <gonio/brdf/albedo.h>
-#include <gonio/brdf/validate.h>
-#include <gonio/fitting/model.h>
-#include <gonio/mapping/error.h>
+#include <gonio/brdf/formats/sniff.h>
+#include <gonio/brdf/table/albedo.h>
+#include <gonio/brdf/table/validate.h>
+#include <gonio/fitting/model/model.h>
+#include <gonio/mapping/base/error.h>
 #include <gonio/tools/input.h>
 #include <gonio/tools/number.h>
 #include <gonio/tools/progress.h>

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/error.h>
 
 namespace gonio {
 

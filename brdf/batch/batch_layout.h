@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include <gonio/brdf/colour.h>
-#include <gonio/mapping/stack.h>
+#include <gonio/brdf/bsdf/colour.h>
+#include <gonio/mapping/stack/stack.h>
 
 namespace gonio {
 

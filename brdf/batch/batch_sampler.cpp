@@ -1,6 +1,6 @@
 #include <gonio/brdf/batch/batch_sampler.h>
 #include <gonio/brdf/batch/targets.h>
-#include <gonio/mapping/monotone_root.h>
+#include <gonio/mapping/numeric/monotone_root.h>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "gonio/brdf/batch/batch_sampler.cpp"

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include <gonio/brdf/batch/batch_layout.h>
-#include <gonio/brdf/compact_bsdf.h>
-#include <gonio/brdf/sampler.h>
+#include <gonio/brdf/bsdf/compact_bsdf.h>
+#include <gonio/brdf/bsdf/sampler.h>
 
 namespace gonio {
 

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include <gonio/brdf/batch/batch_layout.h>
-#include <gonio/mapping/stack.h>
+#include <gonio/mapping/stack/stack.h>
 
 namespace gonio {
 

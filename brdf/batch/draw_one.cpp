@@ -1,8 +1,8 @@
 #include <gonio/brdf/batch/batch_sampler.h>
 #include <gonio/brdf/batch/one_lane.h>
 #include <gonio/brdf/batch/targets.h>
-#include <gonio/brdf/frame.h>
-#include <gonio/mapping/monotone_root.h>
+#include <gonio/brdf/bsdf/frame.h>
+#include <gonio/mapping/numeric/monotone_root.h>
 
 #define GONIO_LANE_CAP 2
 #undef HWY_TARGET_INCLUDE

@@ -1,7 +1,7 @@
 #include <gonio/brdf/batch/batch_sampler.h>
 #include <gonio/brdf/batch/one_lane.h>
 #include <gonio/brdf/batch/targets.h>
-#include <gonio/mapping/monotone_root.h>
+#include <gonio/mapping/numeric/monotone_root.h>
 
 #define GONIO_LANE_CAP 1
 #undef HWY_TARGET_INCLUDE

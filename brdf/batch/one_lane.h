@@ -1,7 +1,7 @@
 #pragma once
 
 #include <gonio/brdf/batch/batch_layout.h>
-#include <gonio/brdf/bsdf_sample.h>
+#include <gonio/brdf/bsdf/bsdf_sample.h>
 
 namespace gonio {
 

@@ -5,8 +5,8 @@
 #include <cstring>
 #include <map>
 
-#include <gonio/mapping/bytes.h>
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/bytes.h>
+#include <gonio/mapping/base/error.h>
 
 namespace gonio {
 namespace {

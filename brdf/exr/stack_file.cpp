@@ -21,10 +21,10 @@
 #include <cstring>
 #include <vector>
 
-#include <gonio/mapping/bytes.h>
+#include <gonio/mapping/base/bytes.h>
 #include <gonio/brdf/exr/check_attributes.h>
-#include <gonio/mapping/atomic_file.h>
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/atomic_file.h>
+#include <gonio/mapping/base/error.h>
 
 namespace gonio {
 namespace {

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include <gonio/brdf/compact_bsdf.h>
+#include <gonio/brdf/bsdf/compact_bsdf.h>
 
 namespace gonio {
 

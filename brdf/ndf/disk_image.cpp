@@ -5,9 +5,9 @@
 #include <string>
 #include <utility>
 
-#include <gonio/brdf/parallel.h>
-#include <gonio/mapping/error.h>
-#include <gonio/mapping/solid_angle.h>
+#include <gonio/mapping/base/parallel.h>
+#include <gonio/mapping/base/error.h>
+#include <gonio/mapping/sphere/solid_angle.h>
 
 namespace gonio {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <gonio/mapping/hemisphere.h>
+#include <gonio/mapping/charts/hemisphere.h>
 
 #include <cstddef>
 #include <functional>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <gonio/brdf/table.h>
+#include <gonio/brdf/table/table.h>
 
 #include <functional>
 #include <vector>

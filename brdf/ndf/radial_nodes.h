@@ -1,7 +1,7 @@
 #pragma once
 
-#include <gonio/mapping/concentric.h>
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/charts/concentric.h>
+#include <gonio/mapping/base/error.h>
 
 #include <cmath>
 #include <string>

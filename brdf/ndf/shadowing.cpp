@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <gonio/brdf/parallel.h>
-#include <gonio/mapping/solid_angle.h>
+#include <gonio/mapping/base/parallel.h>
+#include <gonio/mapping/sphere/solid_angle.h>
 
 namespace gonio {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
-#include <gonio/mapping/error.h>
-#include <gonio/mapping/hemisphere.h>
+#include <gonio/mapping/base/error.h>
+#include <gonio/mapping/charts/hemisphere.h>
 
 namespace gonio::proof {
 namespace {

@@ -8,8 +8,8 @@
 #include <ostream>
 #include <sstream>
 
-#include <gonio/mapping/atomic_file.h>
-#include <gonio/mapping/hemisphere.h>
+#include <gonio/mapping/base/atomic_file.h>
+#include <gonio/mapping/charts/hemisphere.h>
 
 namespace gonio::proof {
 

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include <gonio/brdf/table.h>
-#include <gonio/mapping/stack.h>
+#include <gonio/brdf/table/table.h>
+#include <gonio/mapping/stack/stack.h>
 
 namespace gonio::proof {
 

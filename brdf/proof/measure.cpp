@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <gonio/brdf/frame.h>
+#include <gonio/brdf/bsdf/frame.h>
 #include <gonio/brdf/proof/edges.h>
 #include <gonio/brdf/proof/incident.h>
 #include <gonio/brdf/proof/random.h>

@@ -5,8 +5,8 @@
 #include <optional>
 
 #include <gonio/brdf/proof/chi_square.h>
-#include <gonio/brdf/sampler.h>
-#include <gonio/mapping/packed_stack.h>
+#include <gonio/brdf/bsdf/sampler.h>
+#include <gonio/mapping/stack/packed_stack.h>
 
 namespace gonio::proof {
 

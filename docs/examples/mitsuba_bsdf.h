@@ -1,7 +1,7 @@
 #pragma once
 
-#include <gonio/brdf/material_hints.h>
-#include <gonio/brdf/sampler.h>
+#include <gonio/brdf/bsdf/material_hints.h>
+#include <gonio/brdf/bsdf/sampler.h>
 
 #include <cmath>
 #include <memory>

@@ -1,5 +1,5 @@
-#include <gonio/brdf/sampler.h>
-#include <gonio/brdf/table.h>
+#include <gonio/brdf/bsdf/sampler.h>
+#include <gonio/brdf/table/table.h>
 
 #include <glm/mat3x3.hpp>
 #include <memory>

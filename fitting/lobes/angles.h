@@ -1,6 +1,6 @@
 #pragma once
 
-#include <gonio/mapping/concentric.h>
+#include <gonio/mapping/charts/concentric.h>
 
 #include <cmath>
 #include <glm/geometric.hpp>

@@ -1,4 +1,4 @@
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/error.h>
 #include <gonio/mapping/light/emission.h>
 
 #include <algorithm>

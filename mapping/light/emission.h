@@ -1,7 +1,7 @@
 #pragma once
 
-#include <gonio/mapping/light/light_diagram.h>
-#include <gonio/mapping/sphere.h>
+#include <gonio/mapping/light/diagram/light_diagram.h>
+#include <gonio/mapping/sphere/sphere.h>
 
 #include <functional>
 #include <string>

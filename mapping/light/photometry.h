@@ -1,6 +1,6 @@
 #pragma once
 
-#include <gonio/mapping/light/luminaire.h>
+#include <gonio/mapping/light/files/luminaire.h>
 
 #include <vector>
 

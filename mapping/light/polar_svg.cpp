@@ -1,7 +1,7 @@
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/error.h>
 #include <gonio/mapping/light/photometry.h>
 #include <gonio/mapping/light/polar_svg.h>
-#include <gonio/mapping/light/text_scanner.h>
+#include <gonio/mapping/light/files/text_scanner.h>
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 // Samples the table named by the argument and checks each draw against pdf() and eval().
-#include <gonio/brdf/sampler.h>
-#include <gonio/brdf/table.h>
+#include <gonio/brdf/bsdf/sampler.h>
+#include <gonio/brdf/table/table.h>
 
 #include <cmath>
 #include <cstdio>

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <gonio/brdf/problem.h>
+#include <gonio/mapping/base/problem.h>
 
 namespace gonio::fuzz {
 

@@ -1,6 +1,6 @@
 #include <gonio/brdf/exr/disk_image_file.h>
 #include <gonio/brdf/exr/stack_file.h>
-#include <gonio/fitting/model.h>
+#include <gonio/fitting/model/model.h>
 
 #include <filesystem>
 #include <fstream>

@@ -1,8 +1,8 @@
-#include <gonio/mapping/error.h>
-#include <gonio/mapping/light/eulumdat.h>
-#include <gonio/mapping/light/ies.h>
-#include <gonio/mapping/light/luminaire.h>
-#include <gonio/mapping/light/text_scanner.h>
+#include <gonio/mapping/base/error.h>
+#include <gonio/mapping/light/files/eulumdat.h>
+#include <gonio/mapping/light/files/ies.h>
+#include <gonio/mapping/light/files/luminaire.h>
+#include <gonio/mapping/light/files/text_scanner.h>
 
 #include <cmath>
 #include <cstdlib>

@@ -1,5 +1,5 @@
-#include <gonio/brdf/grid.h>
-#include <gonio/mapping/error.h>
+#include <gonio/brdf/formats/mbsdf.h>
+#include <gonio/mapping/base/error.h>
 
 #include "evaluate.h"
 

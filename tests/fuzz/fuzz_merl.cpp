@@ -1,4 +1,4 @@
-#include <gonio/brdf/merl.h>
+#include <gonio/brdf/formats/merl.h>
 
 #include <cstdlib>
 

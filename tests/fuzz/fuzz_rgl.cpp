@@ -1,5 +1,5 @@
-#include <gonio/brdf/rgl.h>
-#include <gonio/mapping/error.h>
+#include <gonio/brdf/formats/rgl/rgl.h>
+#include <gonio/mapping/base/error.h>
 
 #include "evaluate.h"
 

@@ -1,5 +1,5 @@
-#include <gonio/fitting/parse_json.h>
-#include <gonio/mapping/error.h>
+#include <gonio/fitting/model/parse_json.h>
+#include <gonio/mapping/base/error.h>
 #include <gonio/tools/render/read_scene.h>
 
 #include <cmath>

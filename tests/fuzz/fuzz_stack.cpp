@@ -1,5 +1,5 @@
 #include <gonio/brdf/exr/stack_file.h>
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/error.h>
 
 #include "memory_file.h"
 

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/error.h>
 #include <gonio/tools/render/mesh.h>
 
 namespace gonio::fuzz {

@@ -1,7 +1,7 @@
 // The 16-bit stack, beside the benchmarks of the same names without "packed" and with "blend".
 #include <benchmark/benchmark.h>
 
-#include <gonio/mapping/packed_stack.h>
+#include <gonio/mapping/stack/packed_stack.h>
 #include <gonio/tools/bench/stacks.h>
 
 namespace gonio::bench {

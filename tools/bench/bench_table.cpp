@@ -6,13 +6,13 @@
 #include <memory>
 #include <string>
 
-#include <gonio/brdf/baseline.h>
+#include <gonio/brdf/proof/baseline.h>
 #include <gonio/brdf/batch/batch_sampler.h>
-#include <gonio/brdf/fit_compact.h>
+#include <gonio/brdf/build/fit_compact.h>
 #include <gonio/brdf/proof/gallery.h>
 #include <gonio/brdf/proof/random.h>
-#include <gonio/brdf/sampler.h>
-#include <gonio/brdf/write.h>
+#include <gonio/brdf/bsdf/sampler.h>
+#include <gonio/brdf/resample/table_resample.h>
 #include <gonio/tools/bench/stacks.h>
 
 namespace gonio::bench {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <gonio/brdf/proof/random.h>
-#include <gonio/mapping/stack.h>
+#include <gonio/mapping/stack/stack.h>
 
 namespace gonio::bench {
 

@@ -1,7 +1,7 @@
-#include <gonio/brdf/sniff.h>
-#include <gonio/mapping/error.h>
+#include <gonio/brdf/formats/sniff.h>
+#include <gonio/mapping/base/error.h>
 #include <gonio/mapping/light/exr/light_exr.h>
-#include <gonio/mapping/light/light_texture.h>
+#include <gonio/mapping/light/texture/light_texture.h>
 #include <gonio/mapping/light/photometry.h>
 #include <gonio/tools/light/command.h>
 

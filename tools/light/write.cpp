@@ -1,5 +1,5 @@
-#include <gonio/mapping/atomic_file.h>
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/atomic_file.h>
+#include <gonio/mapping/base/error.h>
 #include <gonio/mapping/light/exr/light_exr.h>
 #include <gonio/mapping/light/polar_svg.h>
 #include <gonio/tools/check_not_input.h>

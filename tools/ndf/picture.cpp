@@ -10,8 +10,8 @@
 #include <limits>
 #include <ostream>
 
-#include <gonio/mapping/atomic_file.h>
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/atomic_file.h>
+#include <gonio/mapping/base/error.h>
 #include <gonio/tools/base64.h>
 #include <gonio/tools/number.h>
 

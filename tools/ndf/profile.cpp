@@ -5,8 +5,8 @@
 #include <iomanip>
 #include <ostream>
 
-#include <gonio/mapping/atomic_file.h>
-#include <gonio/mapping/concentric.h>
+#include <gonio/mapping/base/atomic_file.h>
+#include <gonio/mapping/charts/concentric.h>
 
 namespace gonio {
 namespace {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include <gonio/brdf/sampler.h>
+#include <gonio/brdf/bsdf/sampler.h>
 
 namespace gonio {
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/error.h>
 #include <gonio/tools/progress.h>
 #include <gonio/tools/check_not_input.h>
 #include <gonio/tools/check_writable.h>

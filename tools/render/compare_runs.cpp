@@ -7,7 +7,7 @@
 #include <map>
 #include <memory>
 
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/error.h>
 #include <gonio/tools/render/difference.h>
 
 namespace gonio {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <gonio/brdf/table.h>
+#include <gonio/brdf/table/table.h>
 #include <gonio/tools/render/tone_map.h>
 
 namespace gonio {

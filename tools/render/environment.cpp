@@ -5,9 +5,9 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include <gonio/brdf/table.h>
-#include <gonio/mapping/error.h>
-#include <gonio/mapping/hemisphere.h>
+#include <gonio/brdf/table/table.h>
+#include <gonio/mapping/base/error.h>
+#include <gonio/mapping/charts/hemisphere.h>
 
 namespace gonio {
 namespace {

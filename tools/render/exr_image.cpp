@@ -12,8 +12,8 @@
 
 #include <gonio/brdf/exr/check_attributes.h>
 #include <gonio/brdf/exr/stack_file.h>
-#include <gonio/mapping/atomic_file.h>
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/atomic_file.h>
+#include <gonio/mapping/base/error.h>
 
 namespace gonio {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <sstream>
 
-#include <gonio/fitting/parse_json.h>
-#include <gonio/mapping/error.h>
+#include <gonio/fitting/model/parse_json.h>
+#include <gonio/mapping/base/error.h>
 
 namespace gonio {
 namespace {

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include <gonio/mapping/concentric.h>
+#include <gonio/mapping/charts/concentric.h>
 #include <gonio/tools/render/bsdf.h>
 
 namespace gonio {

@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include <gonio/mapping/hemisphere.h>
+#include <gonio/mapping/charts/hemisphere.h>
 
 namespace gonio {
 

@@ -6,8 +6,8 @@
 #include <limits>
 #include <utility>
 
-#include <gonio/mapping/bytes.h>
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/bytes.h>
+#include <gonio/mapping/base/error.h>
 #include <gonio/tools/render/read_mesh.h>
 #include <gonio/tools/render/words.h>
 

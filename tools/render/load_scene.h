@@ -3,7 +3,7 @@
 #include <CLI/App.hpp>
 #include <string>
 
-#include <gonio/brdf/cells.h>
+#include <gonio/brdf/formats/cell_policies.h>
 #include <gonio/tools/render/film.h>
 #include <gonio/tools/render/scene.h>
 

@@ -4,7 +4,7 @@
 #include <set>
 #include <vector>
 
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/error.h>
 #include <gonio/tools/render/triangulate.h>
 #include <gonio/tools/render/words.h>
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/error.h>
 #include <gonio/tools/number.h>
 #include <gonio/tools/render/triangulate.h>
 #include <gonio/tools/render/words.h>

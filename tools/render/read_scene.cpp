@@ -7,10 +7,10 @@
 #include <map>
 #include <sstream>
 
-#include <gonio/mapping/bytes.h>
+#include <gonio/mapping/base/bytes.h>
 #include <gonio/brdf/exr/stack_file.h>
-#include <gonio/fitting/parse_json.h>
-#include <gonio/mapping/error.h>
+#include <gonio/fitting/model/parse_json.h>
+#include <gonio/mapping/base/error.h>
 #include <gonio/mapping/light/exr/light_exr.h>
 #include <gonio/tools/input.h>
 #include <gonio/tools/render/json_fields.h>

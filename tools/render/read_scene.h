@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include <gonio/brdf/cells.h>
+#include <gonio/brdf/formats/cell_policies.h>
 #include <gonio/tools/render/scene.h>
 
 namespace gonio {

@@ -8,8 +8,8 @@
 #include <optional>
 #include <string>
 
-#include <gonio/mapping/atomic_file.h>
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/atomic_file.h>
+#include <gonio/mapping/base/error.h>
 #include <gonio/tools/number.h>
 #include <gonio/tools/options.h>
 #include <gonio/tools/progress.h>

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include <gonio/brdf/baseline.h>
-#include <gonio/fitting/lobe_sampler.h>
-#include <gonio/mapping/error.h>
+#include <gonio/brdf/proof/baseline.h>
+#include <gonio/fitting/sampling/lobe_sampler.h>
+#include <gonio/mapping/base/error.h>
 #include <gonio/tools/table_fits.h>
 
 namespace gonio {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <gonio/brdf/build.h>
-#include <gonio/fitting/model.h>
+#include <gonio/brdf/build/build_stack.h>
+#include <gonio/fitting/model/model.h>
 #include <gonio/tools/render/bsdf.h>
 
 #include <functional>

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include <gonio/brdf/table.h>
-#include <gonio/fitting/model.h>
+#include <gonio/brdf/table/table.h>
+#include <gonio/fitting/model/model.h>
 #include <gonio/mapping/light/emission.h>
 #include <gonio/tools/render/bsdf.h>
 #include <gonio/tools/render/environment.h>

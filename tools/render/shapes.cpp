@@ -6,8 +6,8 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
-#include <gonio/mapping/error.h>
-#include <gonio/mapping/hemisphere.h>
+#include <gonio/mapping/base/error.h>
+#include <gonio/mapping/charts/hemisphere.h>
 
 namespace gonio {
 namespace {

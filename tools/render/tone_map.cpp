@@ -7,8 +7,8 @@
 #include <cstring>
 #include <glm/common.hpp>
 
-#include <gonio/brdf/table.h>
-#include <gonio/mapping/error.h>
+#include <gonio/brdf/table/table.h>
+#include <gonio/mapping/base/error.h>
 
 namespace gonio {
 namespace {

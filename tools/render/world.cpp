@@ -9,7 +9,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/error.h>
 
 namespace gonio {
 namespace {

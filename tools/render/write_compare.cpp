@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <ostream>
 
-#include <gonio/mapping/atomic_file.h>
+#include <gonio/mapping/base/atomic_file.h>
 #include <gonio/tools/base64.h>
 #include <gonio/tools/render/difference.h>
 #include <gonio/tools/render/tone_map.h>

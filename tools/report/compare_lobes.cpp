@@ -1,4 +1,4 @@
-#include <gonio/fitting/model.h>
+#include <gonio/fitting/model/model.h>
 #include <gonio/tools/report/compare_lobes.h>
 
 #include <algorithm>

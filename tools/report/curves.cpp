@@ -10,7 +10,7 @@
 #include <vector>
 
 #include <gonio/brdf/proof/random.h>
-#include <gonio/mapping/hemisphere.h>
+#include <gonio/mapping/charts/hemisphere.h>
 
 namespace gonio {
 namespace {

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include <gonio/brdf/proof/measure.h>
-#include <gonio/fitting/model.h>
+#include <gonio/fitting/model/model.h>
 
 namespace gonio {
 

@@ -1,6 +1,6 @@
 #include <gonio/tools/report/grid_figure.h>
 
-#include <gonio/mapping/atomic_file.h>
+#include <gonio/mapping/base/atomic_file.h>
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include <gonio/mapping/stack.h>
+#include <gonio/mapping/stack/stack.h>
 
 namespace gonio {
 

@@ -14,13 +14,13 @@
 #include <gonio/tools/front.h>
 #include <gonio/tools/report/timing.h>
 
-#include <gonio/brdf/baseline.h>
+#include <gonio/brdf/proof/baseline.h>
 #include <gonio/brdf/exr/stack_file.h>
-#include <gonio/brdf/fit_compact.h>
-#include <gonio/brdf/parallel.h>
-#include <gonio/fitting/fit_json.h>
-#include <gonio/fitting/lobe_sampler.h>
-#include <gonio/mapping/error.h>
+#include <gonio/brdf/build/fit_compact.h>
+#include <gonio/mapping/base/parallel.h>
+#include <gonio/fitting/fit/fit_json.h>
+#include <gonio/fitting/sampling/lobe_sampler.h>
+#include <gonio/mapping/base/error.h>
 #include <gonio/tools/input.h>
 #include <gonio/tools/table_fits.h>
 

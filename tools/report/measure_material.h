@@ -4,7 +4,7 @@
 
 #include <gonio/tools/report/report_data.h>
 
-#include <gonio/brdf/build.h>
+#include <gonio/brdf/build/build_stack.h>
 
 namespace gonio {
 

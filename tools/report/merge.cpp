@@ -4,10 +4,10 @@
 #include <cstdio>
 #include <ostream>
 
-#include <gonio/mapping/bytes.h>
-#include <gonio/fitting/parse_json.h>
-#include <gonio/mapping/atomic_file.h>
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/bytes.h>
+#include <gonio/fitting/model/parse_json.h>
+#include <gonio/mapping/base/atomic_file.h>
+#include <gonio/mapping/base/error.h>
 #include <gonio/tools/report/write_page.h>
 
 namespace gonio {

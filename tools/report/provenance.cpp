@@ -1,7 +1,7 @@
 #include <gonio/tools/report/provenance.h>
 
-#include <gonio/mapping/bytes.h>
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/bytes.h>
+#include <gonio/mapping/base/error.h>
 #include <openssl/evp.h>
 
 #include <array>

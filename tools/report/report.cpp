@@ -1,7 +1,7 @@
 #include <gonio/tools/report/report.h>
 
 #include <gonio/brdf/exr/stack_file.h>
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/error.h>
 #include <gonio/mapping/light/exr/light_exr.h>
 #include <gonio/tools/check_not_input.h>
 #include <gonio/tools/check_writable.h>

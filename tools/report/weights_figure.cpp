@@ -1,6 +1,6 @@
 #include <gonio/tools/report/weights_figure.h>
 
-#include <gonio/mapping/atomic_file.h>
+#include <gonio/mapping/base/atomic_file.h>
 #include <gonio/tools/report/report_data.h>
 
 #include <algorithm>

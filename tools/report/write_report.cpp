@@ -13,10 +13,10 @@
 #include <iomanip>
 #include <ostream>
 
-#include <gonio/fitting/fit.h>
-#include <gonio/mapping/atomic_file.h>
-#include <gonio/mapping/concentric.h>
-#include <gonio/mapping/error.h>
+#include <gonio/fitting/fit/fit.h>
+#include <gonio/mapping/base/atomic_file.h>
+#include <gonio/mapping/charts/concentric.h>
+#include <gonio/mapping/base/error.h>
 
 namespace gonio {
 namespace {

@@ -7,8 +7,8 @@
 #include <sstream>
 
 #include <gonio/brdf/proof/random.h>
-#include <gonio/mapping/atomic_file.h>
-#include <gonio/mapping/concentric.h>
+#include <gonio/mapping/base/atomic_file.h>
+#include <gonio/mapping/charts/concentric.h>
 
 namespace gonio {
 namespace {

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include <gonio/mapping/diagram.h>
+#include <gonio/mapping/diagram/diagram.h>
 #include <gonio/tools/stability/measure_row.h>
 
 namespace gonio {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include <gonio/mapping/diagram.h>
+#include <gonio/mapping/diagram/diagram.h>
 
 namespace gonio {
 

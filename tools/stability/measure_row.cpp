@@ -5,7 +5,7 @@
 
 #include <gonio/brdf/proof/chi_square.h>
 #include <gonio/brdf/proof/random.h>
-#include <gonio/mapping/stack.h>
+#include <gonio/mapping/stack/stack.h>
 
 namespace gonio {
 namespace {

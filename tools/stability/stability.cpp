@@ -2,8 +2,8 @@
 #include <gonio/tools/stability/stability.h>
 
 #include <gonio/brdf/proof/chi_square.h>
-#include <gonio/mapping/atomic_file.h>
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/atomic_file.h>
+#include <gonio/mapping/base/error.h>
 #include <gonio/tools/progress.h>
 #include <gonio/tools/stability/figures.h>
 #include <gonio/tools/stability/measure_row.h>

@@ -1,9 +1,9 @@
 #include <gonio/tools/stability/summary.h>
 #include <gonio/tools/number.h>
 
-#include <gonio/mapping/bytes.h>
-#include <gonio/fitting/parse_json.h>
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/bytes.h>
+#include <gonio/fitting/model/parse_json.h>
+#include <gonio/mapping/base/error.h>
 
 #include <algorithm>
 #include <cmath>

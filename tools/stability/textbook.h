@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include <gonio/mapping/diagram.h>
+#include <gonio/mapping/diagram/diagram.h>
 
 namespace gonio::textbook {
 

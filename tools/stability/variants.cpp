@@ -6,7 +6,7 @@
 #include <memory>
 #include <utility>
 
-#include <gonio/mapping/stack.h>
+#include <gonio/mapping/stack/stack.h>
 #include <gonio/tools/stability/textbook.h>
 
 namespace gonio {

@@ -10,12 +10,12 @@
 #include <ImfStringAttribute.h>
 #include <ImfVecAttribute.h>
 #include <ImfVersion.h>
-#include <gonio/mapping/atomic_file.h>
-#include <gonio/mapping/bytes.h>
-#include <gonio/mapping/error.h>
+#include <gonio/mapping/base/atomic_file.h>
+#include <gonio/mapping/base/bytes.h>
+#include <gonio/mapping/base/error.h>
 #include <gonio/mapping/light/exr/light_exr.h>
-#include <gonio/mapping/light/octahedral.h>
-#include <gonio/mapping/light/text_scanner.h>
+#include <gonio/mapping/light/texture/octahedral.h>
+#include <gonio/mapping/light/files/text_scanner.h>
 
 #include <cmath>
 #include <vector>

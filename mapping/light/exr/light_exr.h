@@ -1,7 +1,7 @@
 #pragma once
 
-#include <gonio/mapping/light/luminaire.h>
-#include <gonio/mapping/light/solid.h>
+#include <gonio/mapping/light/files/luminaire.h>
+#include <gonio/mapping/light/texture/solid.h>
 
 #include <filesystem>
 #include <string>

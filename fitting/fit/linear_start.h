@@ -1,0 +1,19 @@
+#pragma once
+
+#include <gonio/fitting/fit/residual.h>
+
+#include <vector>
+
+namespace gonio::detail {
+
+/// Sets the colours of the model for the shapes it has: the amplitudes are linear (F0 and F90 of
+/// the Schlick term included), so that they are a non-negative least-squares problem per channel.
+/// Compression is met by reweighting with the slope of C between model and table, four times.
+/// Conductors take the eta and k that give the F0 found, with eta = 1.
+void solve_colors(const std::vector<FitSample>& samples, Compression compression, LobeModel& model);
+
+/// Minimises |A x - b|^2 over x >= 0, from the normal equations (ata row by row, n x n).
+std::vector<double> non_negative_least_squares(const std::vector<double>& ata,
+                                               const std::vector<double>& atb);
+
+}  // namespace gonio::detail

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <gonio/fitting/model/model.h>
+
+#include <nlohmann/json.hpp>
+
+/// Not installed: keeps nlohmann::json out of the public headers.
+namespace gonio::detail {
+
+nlohmann::ordered_json model_json(const LobeModel& model);
+
+}  // namespace gonio::detail

@@ -1,0 +1,18 @@
+#include <gonio/mapping/base/problem.h>
+#include <gonio/mapping/base/error.h>
+
+namespace gonio {
+
+std::string to_string(const Problem& problem) {
+  return problem.field + ": found " + problem.found + ", expected " + problem.expected;
+}
+
+void throw_if_fatal(const std::string& file, const std::vector<Problem>& problems) {
+  std::string text;
+  for (const Problem& problem : problems) {
+    if (problem.fatal) text += (text.empty() ? "" : "; ") + to_string(problem);
+  }
+  if (!text.empty()) throw Error(file + ": " + text);
+}
+
+}  // namespace gonio
