@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include <gonio/brdf/bsdf/colour.h>
+#include <gonio/brdf/value/colour.h>
 #include <gonio/mapping/stack/stack.h>
 
 namespace gonio {

@@ -1,7 +1,6 @@
-#include <gonio/brdf/batch/batch_sampler.h>
-#include <gonio/brdf/batch/one_lane.h>
+#include <gonio/brdf/batch/batch_bsdf.h>
 #include <gonio/brdf/batch/targets.h>
-#include <gonio/brdf/bsdf/frame.h>
+#include <gonio/brdf/value/frame.h>
 #include <gonio/mapping/numeric/monotone_root.h>
 
 #define GONIO_LANE_CAP 2
@@ -27,7 +26,7 @@ struct PlaceOfOne {
   std::ptrdiff_t k;
   float alpha;
 };
-HWY_INLINE PlaceOfOne place_of_one(const BatchAngles& angles, const Incidence& i) {
+HWY_INLINE PlaceOfOne place_of_one(const BatchAngles& angles, const IncidentAngle& i) {
   if (angles.count == 1) return {0, 0};
   const float r = hn::GetLane(i.r);
   int k = angles.guide[static_cast<std::size_t>(std::min(static_cast<int>(r * BatchAngles::guide_parts), BatchAngles::guide_parts - 1))];
@@ -141,7 +140,7 @@ bool draw(const BatchLayout& layout, const BatchColour* colour, const glm::vec3&
   const Drawn drawn = from_disk(layout, frame.i.theta, at.r, at.gap, at.phi, uv.sign(), at.pdf);
   const Direction wo = to_surface(frame.cos_phi, frame.sin_phi, drawn.wo);
   out.wo = {hn::GetLane(wo.x), hn::GetLane(wo.y), hn::GetLane(wo.z)}, out.pdf = hn::GetLane(drawn.pdf);
-  if (colour != nullptr) out.weight *= std::min(out.wo.z * (1 / CompactBsdf::min_cosine), 1.0f);
+  if (colour != nullptr) out.weight *= std::min(out.wo.z * (1 / Colour::min_cosine), 1.0f);
   return out.pdf > 0 && out.wo.z > 0;
 }
 #else
@@ -163,11 +162,8 @@ HWY_EXPORT(draw);
 
 }  // namespace
 
-std::optional<BsdfSample> BatchSampler::sample(const glm::vec3& wi, const glm::vec2& u) const noexcept {
-  BsdfSample s;
-  if (!HWY_DYNAMIC_DISPATCH(draw)(layout_, table_ ? nullptr : &colour_, wi, u, s)) return std::nullopt;
-  if (table_) s.weight = table_->eval(wi, s.wo) * (s.wo.z / s.pdf);
-  return s;
+bool draw_one(const BatchLayout& layout, const BatchColour* colour, const glm::vec3& wi, const glm::vec2& u, BsdfSample& out) noexcept {
+  return HWY_DYNAMIC_DISPATCH(draw)(layout, colour, wi, u, out);
 }
 
 }  // namespace gonio

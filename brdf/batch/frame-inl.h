@@ -14,11 +14,11 @@ namespace HWY_NAMESPACE {
 inline namespace GONIO_LANES {
 
 /// An incident angle, and as a radius of the disk.
-struct Incidence {
+struct IncidentAngle {
   V theta, r;
 };
 /// theta_to_radius(); beyond pi/2 and below 0 as at the ends.
-HWY_INLINE Incidence incidence(V theta_i) {
+HWY_INLINE IncidentAngle incident_angle(V theta_i) {
   const V theta = hn::Min(hn::Max(theta_i, zero()), set(1.57079633f));
   return {theta, hn::Mul(set(1.41421356f), sin_cos(hn::Mul(set(0.5f), theta)).sin)};
 }
@@ -28,7 +28,7 @@ HWY_INLINE M is_above(const Direction& w) { return hn::And(hn::Gt(w.z, zero()), 
 
 /// IncidentFrame, and its to_surface(). The angle by way of the radius, as radius_to_theta(): sooner at hand than an arc tangent.
 struct Frame {
-  Incidence i;
+  IncidentAngle i;
   V cos_phi, sin_phi;
   M above;
 

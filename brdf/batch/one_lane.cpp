@@ -1,5 +1,4 @@
-#include <gonio/brdf/batch/batch_sampler.h>
-#include <gonio/brdf/batch/one_lane.h>
+#include <gonio/brdf/batch/batch_bsdf.h>
 #include <gonio/brdf/batch/targets.h>
 #include <gonio/mapping/numeric/monotone_root.h>
 
@@ -8,14 +7,14 @@
 #define HWY_TARGET_INCLUDE "gonio/brdf/batch/one_lane.cpp"
 #include <hwy/foreach_target.h>
 
-#include <gonio/brdf/batch/sampler-inl.h>
+#include <gonio/brdf/batch/bsdf-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace gonio {
 namespace HWY_NAMESPACE {
 namespace {
 
-// BatchSampler of one element, by the kernels of batches: what they compute costs no branch and no library call.
+// One element, by the kernels of batches: what they compute costs no branch and no library call.
 
 bool draw(const BatchLayout& layout, const BatchColour* colour, const glm::vec3& wi, const glm::vec2& u, BsdfSample& out) {
   const float* const in[] = {&wi.x, &wi.y, &wi.z, &u.x, &u.y};
@@ -55,12 +54,12 @@ bool draw_in_one_lane(const BatchLayout& layout, const BatchColour* colour, cons
   return HWY_DYNAMIC_DISPATCH(draw)(layout, colour, wi, u, out);
 }
 
-float BatchSampler::pdf(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
-  return HWY_DYNAMIC_DISPATCH(pdf)(layout_, wi, wo);
+float pdf_one(const BatchLayout& layout, const glm::vec3& wi, const glm::vec3& wo) noexcept {
+  return HWY_DYNAMIC_DISPATCH(pdf)(layout, wi, wo);
 }
 
-glm::vec3 BatchSampler::eval(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
-  return table_ ? table_->eval(wi, wo) : HWY_DYNAMIC_DISPATCH(eval)(layout_, colour_, wi, wo);
+glm::vec3 eval_one(const BatchLayout& layout, const BatchColour& colour, const glm::vec3& wi, const glm::vec3& wo) noexcept {
+  return HWY_DYNAMIC_DISPATCH(eval)(layout, colour, wi, wo);
 }
 
 }  // namespace gonio

@@ -29,7 +29,7 @@ struct Place {
   VI k;
   V alpha;
 };
-HWY_INLINE Place place_of(const BatchAngles& angles, const Incidence& i) {
+HWY_INLINE Place place_of(const BatchAngles& angles, const IncidentAngle& i) {
   if (angles.count == 1) return {hn::Zero(DI()), zero()};
   const V part = hn::Mul(i.r, set(BatchAngles::guide_parts));
   VI k = at(angles.guide.data(), hn::Min(truncated(part), set_int(BatchAngles::guide_parts - 1)));

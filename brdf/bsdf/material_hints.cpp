@@ -1,5 +1,5 @@
 #include <gonio/brdf/bsdf/material_hints.h>
-#include <gonio/brdf/table/table.h>
+#include <gonio/brdf/value/luminance.h>
 #include <gonio/mapping/charts/hemisphere.h>
 
 #include <algorithm>

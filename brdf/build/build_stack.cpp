@@ -25,15 +25,16 @@ double disk_density(const BrdfTable& table, Chart chart, double theta_i, Polar<d
   return transfer_density(table, theta_i, d.wo) * d.jacobian;
 }
 
-StackGrid build_stack(const BrdfTable& table, const StackOptions& options, const Progress& progress) {
+StackGrid build_stack(const BrdfTable& table, const BsdfOptions& options, const Progress& progress) {
   if (options.incident < 2)
     throw Error("stack: incident: found " + std::to_string(options.incident) + ", expected at least 2");
-  if (!(options.tolerance > 0))
-    throw Error("stack: tolerance: found " + std::to_string(options.tolerance) + ", expected more than 0");
+  const double tolerance = options.max_variance.value_or(*BsdfOptions{}.max_variance);
+  if (!(tolerance > 0)) throw Error("stack: max_variance: found " + std::to_string(tolerance) + ", expected more than 0");
+  const Chart chart = options.chart.value_or(Chart::outgoing);
   const bool blend = options.interpolation == Interpolation::blend;
   std::optional<LineFit> shared;
-  if (blend) shared.emplace(detail::prepare_lines(table, options.chart, options.meridians, options.parallels));
-  detail::GrowthLimits limits{7, static_cast<std::size_t>(options.incident), options.bytes, options.tolerance,
+  if (blend) shared.emplace(detail::prepare_lines(table, chart, options.meridians, options.parallels));
+  detail::GrowthLimits limits{7, static_cast<std::size_t>(options.incident), options.budget, tolerance,
                               [](const Diagram<double>& d) { return d.bytes() / 2; }};  // in float
   // When the memory does not suffice for the tolerance, diagrams of that quality leave too few of
   // them: coarser ones at more angles may do better. The tolerance grows as long as they do.
@@ -41,8 +42,8 @@ StackGrid build_stack(const BrdfTable& table, const StackOptions& options, const
   for (bool more = true; more; limits.tolerance *= 2) {
     // The worst of the angles decides on shared lines: it may have what the interpolation is allowed altogether.
     const detail::Recipe recipe =
-        blend ? detail::Recipe(table, options.chart, shared->lines(limits.tolerance))
-              : detail::Recipe(table, options.chart, {options.meridians, options.parallels, limits.tolerance / 2});
+        blend ? detail::Recipe(table, chart, shared->lines(limits.tolerance))
+              : detail::Recipe(table, chart, {options.meridians, options.parallels, limits.tolerance / 2});
     detail::Grown grown = grow_stack(recipe, options.interpolation, limits, progress);
     // Equal: the tolerance was out of reach of the largest diagram, and still is.
     if (best && grown.mean_error > best->mean_error) break;

@@ -5,7 +5,8 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include <gonio/brdf/bsdf/colour.h>
+#include <gonio/brdf/build/bsdf_options.h>
+#include <gonio/brdf/build/colour_of_table.h>
 
 namespace gonio {
 
@@ -19,9 +20,6 @@ struct CompactQuality {
   /// Largest difference of the directional albedos of a channel, over the largest channel's albedo, up to 80 degrees.
   double albedo_error = 0;
 };
-
-/// How often a material is seen from each angle: shares over equal bins of theta_i in [0, pi/2]; empty: all alike.
-using Incidence = std::vector<double>;
 
 /// The share of an angle's bin over the mean share, but at least 0.02: what was never seen may still come.
 double incidence_weight(const Incidence& incidence, double theta_i);

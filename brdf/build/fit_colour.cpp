@@ -8,7 +8,7 @@
 namespace gonio::detail {
 namespace {
 
-/// Every 2 x 2 cells as their mean: what from_table() gives for half the side.
+/// Every 2 x 2 cells as their mean: what colour_of_table() gives for half the side.
 Colour coarser(const Colour& colour) {
   const std::vector<glm::vec3> values = colour.values();
   const int side = colour.side() / 2, rows = static_cast<int>(colour.theta_i().size()) * std::max(side / 2, 1);
@@ -87,7 +87,7 @@ ColourFit fit_colour(const BrdfTable& table, const DirectionMap& map, const std:
                      const CompactDraws& draws, int finest_side, std::size_t bytes, double enough) {
   std::vector<ColourFit> candidates;
   const auto add = [&](const Colour& cells) { candidates.push_back({cells, draws.quality(cells)}); };
-  const Colour finest = Colour::from_table(table, map, colour_angles(stack_angles), finest_side);
+  const Colour finest = colour_of_table(table, map, colour_angles(stack_angles), finest_side);
   const std::vector<std::size_t> order = spare_layers(finest);
   for (std::size_t spared = 0;; spared += (order.size() - spared + 3) / 4) {
     for (Colour cells = without(finest, order, spared);; cells = coarser(cells)) {

@@ -11,21 +11,27 @@
 #include <gonio/brdf/build/grow_stack.h>
 #include <gonio/mapping/base/parallel.h>
 #include <gonio/mapping/base/error.h>
+#include <gonio/mapping/stack/packed_stack.h>
 
 namespace gonio {
 namespace {
 
-constexpr int most_meridians = 64, most_parallels = 48;
+/// The charts to choose from.
+std::vector<Chart> candidates(const BsdfOptions& options) {
+  if (options.chart) return {*options.chart};
+  return {Chart::half, Chart::outgoing};
+}
 
 class Fitter {
  public:
-  Fitter(const BrdfTable& table, const CompactOptions& options, const Progress& progress)
-      : table_(table), options_(options), progress_(progress) {
+  Fitter(const BrdfTable& table, const BsdfOptions& options, const Progress& progress)
+      : table_(table), options_(options), charts_(candidates(options)), progress_(progress) {
     if (options.max_variance && !(*options.max_variance > 0))
       throw Error("compact fit: max_variance: found " + std::to_string(*options.max_variance) + ", expected more than 0");
     if (options.budget < 1024)
       throw Error("compact fit: budget: found " + std::to_string(options.budget) + " bytes, expected at least 1024");
-    if (options.candidates.empty()) throw Error("compact fit: candidates: found no chart, expected at least one");
+    for (const int size : {options.incident, options.meridians, options.parallels})
+      if (size < 2) throw Error("compact fit: size: found " + std::to_string(size) + ", expected at least 2");
   }
 
   /// A stack of that tolerance, in that chart, with a colour that errs by `colour_error`, added to `tried`; its
@@ -35,12 +41,12 @@ class Fitter {
     const std::size_t m = lines.across.size(), n = lines.along.size();
     // PackedStack: codes, mass up to each meridian, mass up to each block of eight cells.
     const std::size_t diagram = m * n * 2 + m * 4 + m * ((n + 6) / 8) * 4 + 8;
-    const std::size_t lines_bytes = (m + n) * 4 + sizeof(CompactBsdf) + 200;
+    const std::size_t lines_bytes = (m + n) * 4 + sizeof(PackedStack) + sizeof(Colour) + 200;
     const std::size_t least = lines_bytes + 3 * diagram;
     out_of_bytes_ = true;
     if (least > bytes) return std::nullopt;
     const detail::Recipe recipe(table_, chart, lines);
-    detail::GrowthLimits limits{3, 192, bytes - lines_bytes, tolerance, [diagram](const Diagram<double>&) { return diagram; }};
+    detail::GrowthLimits limits{3, static_cast<std::size_t>(options_.incident), bytes - lines_bytes, tolerance, [diagram](const Diagram<double>&) { return diagram; }};
     // A variance that is to hold at every angle holds at those that are rarely seen, too.
     if (!options_.max_variance)
       limits.weight = [this](double theta_i) { return incidence_weight(options_.incidence, theta_i); };
@@ -51,7 +57,7 @@ class Fitter {
     const PackedStack stack(grown.grid);
     const DirectionMap map = direction_map(stack);
     const CompactDraws draws(table_, map, options_.incidence);
-    CompactFit fit{stack.grid(), {}, stack.bytes(), tolerance,
+    CompactFit fit{{stack.grid(), Interpolation::blend, Storage::packed16, {}}, stack.bytes(), tolerance,
                    draws.quality([](float, const CompactDraw& d) { return d.weight; })};
     // A stack that will not be chosen needs no colour.
     if (cut || fit.quality.worst_relvar <= options_.max_variance.value_or(fit.quality.worst_relvar)) {
@@ -59,8 +65,8 @@ class Fitter {
       const std::size_t left = options_.budget > stack.bytes() + 200 ? options_.budget - stack.bytes() - 200 : 0;
       const int finest_side = colour_error > 0 ? 16 : 32;
       detail::ColourFit fitted = detail::fit_colour(table_, map, stack.theta_i(), draws, finest_side, left, colour_error);
-      fit.colour = std::move(fitted.colour), fit.quality = fitted.quality;
-      fit.bytes = fit.bsdf().bytes();
+      fit.data.colour = std::move(fitted.colour), fit.quality = fitted.quality;
+      fit.bytes += fit.data.colour.bytes();
     }
     if (fit.bytes > bytes) return std::nullopt;
     tried.push_back(std::move(fit));
@@ -77,7 +83,7 @@ class Fitter {
     double done = 0;
     prepare_all();
     // The chart with fewer crossings first: it bounds the bytes that are worth a try in the other.
-    std::vector<Chart> order = options_.candidates;
+    std::vector<Chart> order = charts_;
     std::map<Chart, std::size_t> crossings;
     for (const Chart chart : order) {
       const SharedLines lines = prepared(chart).lines(*options_.max_variance);
@@ -89,7 +95,7 @@ class Fitter {
         best = found;
         bytes = tried[*found].bytes;
       }
-      report(done += 1.0 / static_cast<double>(options_.candidates.size()));
+      report(done += 1.0 / static_cast<double>(charts_.size()));
     }
     if (!best) {
       tried.clear();
@@ -101,7 +107,7 @@ class Fitter {
   CompactChoice least_error() {
     const std::size_t budget = options_.budget;
     prepare_all();
-    for (const Chart chart : options_.candidates) {
+    for (const Chart chart : charts_) {
       // Coarser, as long as there are too few diagrams for the tolerance and that makes it better.
       double least = std::numeric_limits<double>::infinity();
       for (double tolerance = start_tolerance; tolerance < coarsest_tolerance; tolerance *= 4) {
@@ -111,13 +117,13 @@ class Fitter {
           least = error;
         }
       }
-      report(0.3 * static_cast<double>(&chart - options_.candidates.data() + 1));
+      report(0.3 * static_cast<double>(&chart - charts_.data() + 1));
     }
     if (tried.empty()) throw Error("compact fit: budget: found " + std::to_string(budget) + " bytes, expected more");
     std::size_t best = least_eval_error();
     // The error falls with about the power 3/4 of the crossings along each of three axes.
     double tolerance = tried[best].tolerance;
-    const Chart chart = tried[best].diagrams.chart;
+    const Chart chart = tried[best].data.diagrams.chart;
     for (int round = 0; round < 4; ++round) {
       const double share = static_cast<double>(tried[best].bytes) / static_cast<double>(budget);
       tolerance *= round == 0 ? std::clamp(std::pow(share, 4.0 / 3), 0.02, 0.7) : 0.6;
@@ -134,7 +140,7 @@ class Fitter {
   std::size_t least_variance_within_budget(double max_variance) {
     const std::size_t before = tried.size();
     for (double tolerance = max_variance; tolerance < coarsest_tolerance; tolerance *= 2) {
-      for (const Chart chart : options_.candidates)
+      for (const Chart chart : charts_)
         attempt(chart, tolerance, options_.budget, colour_error(max_variance), true);
       // Once all angles that are wanted fit, more tolerance makes it worse.
       if (tried.size() > before + 2 && tried.back().quality.worst_relvar > tried[least_worst()].quality.worst_relvar) break;
@@ -163,7 +169,7 @@ class Fitter {
         bytes = tried[*made].bytes;
         // Once more with less of what most bytes are: finer lines leave less to the colour; and the worst angle may
         // be one that hardly depends on the tolerance, so that coarser ones are tried even where it is near the limit.
-        const bool colour_is_most = 2 * tried[*made].colour.bytes() > bytes;
+        const bool colour_is_most = 2 * tried[*made].data.colour.bytes() > bytes;
         if (colour_is_most)
           tolerance = 0.3 * std::min(tolerance, worst);
         else
@@ -181,11 +187,11 @@ class Fitter {
   }
 
   void prepare_all() {
-    std::vector<std::optional<LineFit>> made(options_.candidates.size());
+    std::vector<std::optional<LineFit>> made(charts_.size());
     parallel_for(made.size(), [&](std::size_t k) {
-      made[k].emplace(detail::prepare_lines(table_, options_.candidates[k], most_meridians, most_parallels));
+      made[k].emplace(detail::prepare_lines(table_, charts_[k], options_.meridians, options_.parallels));
     });
-    for (std::size_t k = 0; k < made.size(); ++k) prepared_.emplace(options_.candidates[k], std::move(*made[k]));
+    for (std::size_t k = 0; k < made.size(); ++k) prepared_.emplace(charts_[k], std::move(*made[k]));
   }
 
   /// Has the lines of a chart see these angles, too.
@@ -197,14 +203,14 @@ class Fitter {
   const LineFit& prepared(Chart chart) {
     const auto found = prepared_.find(chart);
     if (found != prepared_.end()) return found->second;
-    return prepared_.emplace(chart, detail::prepare_lines(table_, chart, most_meridians, most_parallels, extra_[chart])).first->second;
+    return prepared_.emplace(chart, detail::prepare_lines(table_, chart, options_.meridians, options_.parallels, extra_[chart])).first->second;
   }
 
   /// Without the stacks that were found wanting before they had a colour.
   CompactChoice coloured(std::size_t best) {
     CompactChoice choice{{}, 0};
     for (std::size_t k = 0; k < tried.size(); ++k) {
-      if (tried[k].colour.empty()) continue;
+      if (tried[k].data.colour.empty()) continue;
       if (k == best) choice.chosen = choice.tried.size();
       choice.tried.push_back(std::move(tried[k]));
     }
@@ -228,7 +234,8 @@ class Fitter {
   }
 
   const BrdfTable& table_;
-  const CompactOptions& options_;
+  const BsdfOptions& options_;
+  const std::vector<Chart> charts_;
   const Progress& progress_;
   std::map<Chart, LineFit> prepared_;
   std::map<Chart, std::vector<double>> extra_;  // angles that lines must see
@@ -239,7 +246,7 @@ class Fitter {
 
 }  // namespace
 
-CompactChoice fit_compact(const BrdfTable& table, const CompactOptions& options, const Progress& progress) {
+CompactChoice fit_compact(const BrdfTable& table, const BsdfOptions& options, const Progress& progress) {
   Fitter fitter(table, options, progress);
   CompactChoice choice = options.max_variance ? fitter.least_bytes() : fitter.least_error();
   if (progress) progress(1);
@@ -247,17 +254,17 @@ CompactChoice fit_compact(const BrdfTable& table, const CompactOptions& options,
 }
 
 std::vector<CompactFit> compact_curve(const BrdfTable& table, const std::vector<double>& max_variances,
-                                      const CompactOptions& options, const Progress& progress) {
+                                      const BsdfOptions& options, const Progress& progress) {
   for (const double max_variance : max_variances)
     if (!(max_variance > 0))
       throw Error("compact fit: max_variances: found " + std::to_string(max_variance) + ", expected more than 0");
-  CompactOptions without_goal = options;  // every stack of the curve is wanted
+  BsdfOptions without_goal = options;  // every stack of the curve is wanted
   without_goal.max_variance.reset();
   Fitter fitter(table, without_goal, progress);
   double done = 0;
   for (const double max_variance : max_variances) {
     std::size_t bytes = options.budget;
-    for (const Chart chart : options.candidates)
+    for (const Chart chart : candidates(options))
       if (const auto made = fitter.attempt(chart, max_variance, bytes, Fitter::colour_error(max_variance), false))
         bytes = fitter.tried[*made].bytes;
     if (progress) progress(done += 1 / static_cast<double>(max_variances.size()));

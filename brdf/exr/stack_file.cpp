@@ -136,18 +136,18 @@ StackFile load(const std::string& file) {
          std::to_string(stack_file_version) + " (a stack file of this library)");
   result.name = attribute<Imf::StringAttribute, std::string>(file, first, "gonio:name");
   result.source = attribute<Imf::StringAttribute, std::string>(file, first, "gonio:source");
-  result.diagrams.chart = choice(file, first, "gonio:chart", charts, Chart::outgoing);
-  result.interpolation = choice(file, first, "gonio:interpolation", interpolations, Interpolation::displacement);
-  result.storage = choice(file, first, "gonio:storage", storages, Storage::float32);
-  if (result.storage == Storage::packed16 && result.interpolation != Interpolation::blend)
-    fail(file, "attribute gonio:interpolation", to_string(result.interpolation), "blend with gonio:storage packed16");
+  result.bsdf.diagrams.chart = choice(file, first, "gonio:chart", charts, Chart::outgoing);
+  result.bsdf.interpolation = choice(file, first, "gonio:interpolation", interpolations, Interpolation::displacement);
+  result.bsdf.storage = choice(file, first, "gonio:storage", storages, Storage::float32);
+  if (result.bsdf.storage == Storage::packed16 && result.bsdf.interpolation != Interpolation::blend)
+    fail(file, "attribute gonio:interpolation", to_string(result.bsdf.interpolation), "blend with gonio:storage packed16");
 
   for (int k = 0; k < input.parts(); ++k) {
     const Imf::Header& header = input.header(k);
     if (!input.partComplete(k)) fail(file, "part " + header.name(), "an incomplete part", "all its rows");
-    if (!result.colour.empty()) fail(file, "part " + header.name(), "a part after colour", "colour to be the last");
+    if (!result.bsdf.colour.empty()) fail(file, "part " + header.name(), "a part after colour", "colour to be the last");
     if (header.name() == "colour") {
-      if (result.diagrams.theta_i.empty()) fail(file, "part colour", "no diagrams before it", "it to be the last part");
+      if (result.bsdf.diagrams.theta_i.empty()) fail(file, "part colour", "no diagrams before it", "it to be the last part");
       auto theta_i = attribute<Imf::FloatVectorAttribute, std::vector<float>>(file, header, "gonio:theta_i");
       const int side = header.dataWindow().max.x < largest_side ? header.dataWindow().max.x + 1 : 0;
       if (side < 2 || theta_i.empty() || theta_i.size() > largest_side)
@@ -157,10 +157,10 @@ StackFile load(const std::string& file) {
       std::vector<glm::vec3> values(pixels.size() / 3);
       for (std::size_t i = 0; i < values.size(); ++i)
         values[i] = {pixels[3 * i], pixels[3 * i + 1], pixels[3 * i + 2]};
-      result.colour = Colour(std::move(theta_i), side, values);
+      result.bsdf.colour = Colour(std::move(theta_i), side, values);
       continue;
     }
-    if (const std::string name = diagram_name(result.diagrams.theta_i.size()); header.name() != name)
+    if (const std::string name = diagram_name(result.bsdf.diagrams.theta_i.size()); header.name() != name)
       fail(file, "name of part " + std::to_string(k), header.name(), name + ", or colour as the last part");
     const std::string field = "part " + header.name() + ": ";
     DiagramGrid grid;
@@ -170,8 +170,8 @@ StackFile load(const std::string& file) {
     const int m = checked_size(file, field + "gonio:phi", grid.phi.size());
     const int n = checked_size(file, field + "gonio:r", grid.r.size());
     grid.density = to_double(read_pixels(file, input, k, n, m, {"Y"}));
-    result.diagrams.theta_i.push_back(attribute<Imf::FloatAttribute, float>(file, header, "gonio:theta_i"));
-    result.diagrams.diagrams.push_back(std::move(grid));
+    result.bsdf.diagrams.theta_i.push_back(attribute<Imf::FloatAttribute, float>(file, header, "gonio:theta_i"));
+    result.bsdf.diagrams.diagrams.push_back(std::move(grid));
   }
   return result;
 }
@@ -180,24 +180,24 @@ StackFile load(const std::string& file) {
 
 void save_stack(const std::filesystem::path& path, const StackFile& file) {
   std::vector<Part> parts;
-  for (std::size_t k = 0; k < file.diagrams.theta_i.size(); ++k) {
-    const DiagramGrid& grid = file.diagrams.diagrams[k];
+  for (std::size_t k = 0; k < file.bsdf.diagrams.theta_i.size(); ++k) {
+    const DiagramGrid& grid = file.bsdf.diagrams.diagrams[k];
     if (grid.azimuth != Azimuth::half)
       fail(path.string(), "diagram " + std::to_string(k), "a full azimuth", "half, mirrored");
     Part part = make_part(diagram_name(k), static_cast<int>(grid.r.size()), static_cast<int>(grid.phi.size()), {"Y"});
-    part.header.insert("gonio:theta_i", Imf::FloatAttribute(static_cast<float>(file.diagrams.theta_i[k])));
+    part.header.insert("gonio:theta_i", Imf::FloatAttribute(static_cast<float>(file.bsdf.diagrams.theta_i[k])));
     part.header.insert("gonio:phi", Imf::FloatVectorAttribute(to_float(grid.phi)));
     part.header.insert("gonio:r", Imf::FloatVectorAttribute(to_float(grid.r)));
     part.pixels = to_float(grid.density);
     parts.push_back(std::move(part));
   }
   if (parts.empty()) fail(path.string(), "diagrams", "none", "at least one");
-  if (!file.colour.empty()) {
-    const int side = file.colour.side();
-    Part part = make_part("colour", side, static_cast<int>(file.colour.theta_i().size()) * (side / 2), {"R", "G", "B"});
-    part.header.insert("gonio:theta_i", Imf::FloatVectorAttribute(file.colour.theta_i()));
+  if (!file.bsdf.colour.empty()) {
+    const int side = file.bsdf.colour.side();
+    Part part = make_part("colour", side, static_cast<int>(file.bsdf.colour.theta_i().size()) * (side / 2), {"R", "G", "B"});
+    part.header.insert("gonio:theta_i", Imf::FloatVectorAttribute(file.bsdf.colour.theta_i()));
     part.header.insert("gonio:units", Imf::StringAttribute("W = f_r cos(theta_o) / pdf, linear Rec. 709"));
-    for (const glm::vec3& w : file.colour.values()) part.pixels.insert(part.pixels.end(), {w.r, w.g, w.b});
+    for (const glm::vec3& w : file.bsdf.colour.values()) part.pixels.insert(part.pixels.end(), {w.r, w.g, w.b});
     parts.push_back(std::move(part));
   }
   Imf::Header& first = parts.front().header;
@@ -205,9 +205,9 @@ void save_stack(const std::filesystem::path& path, const StackFile& file) {
   first.insert("gonio:version", Imf::StringAttribute(GONIO_VERSION));
   first.insert("gonio:name", Imf::StringAttribute(file.name));
   first.insert("gonio:source", Imf::StringAttribute(file.source));
-  first.insert("gonio:chart", Imf::StringAttribute(to_string(file.diagrams.chart)));
-  first.insert("gonio:interpolation", Imf::StringAttribute(to_string(file.interpolation)));
-  first.insert("gonio:storage", Imf::StringAttribute(to_string(file.storage)));
+  first.insert("gonio:chart", Imf::StringAttribute(to_string(file.bsdf.diagrams.chart)));
+  first.insert("gonio:interpolation", Imf::StringAttribute(to_string(file.bsdf.interpolation)));
+  first.insert("gonio:storage", Imf::StringAttribute(to_string(file.bsdf.storage)));
   first.insert("gonio:units", Imf::StringAttribute("pdf per 2 r dr dphi in 1/sr; angles in radians"));
   first.insert("gonio:layout", Imf::StringAttribute("one part per incident angle: columns r, rows phi in 0..pi, mirrored"));
 
@@ -240,10 +240,7 @@ StackFile load_stack(const std::filesystem::path& path) {
   try {
     StackFile file = load(path.string());
     // What cannot be sampled is refused here, with the name of the file.
-    if (file.storage == Storage::packed16)
-      const PackedStack usable(file.diagrams);
-    else
-      const Stack<float> usable(file.diagrams, file.interpolation);
+    sampled_stack(file.bsdf);
     return file;
   } catch (const Error& e) {
     const std::string what = e.what();
@@ -258,10 +255,10 @@ bool is_exr(const std::filesystem::path& path) {
   return magic.size() == 4 && Imf::isImfMagic(magic.data());
 }
 
-CompactBsdf load_compact(const std::filesystem::path& path) {
-  StackFile file = load_stack(path);
-  if (file.colour.empty()) fail(path.string(), "part colour", "none", "one (a self-contained stack)");
-  return CompactBsdf(file.diagrams, file.interpolation, file.storage, std::move(file.colour));
+Bsdf load_bsdf(const std::filesystem::path& path, std::shared_ptr<const BrdfTable> table) {
+  const StackFile file = load_stack(path);
+  if (file.bsdf.colour.empty() && !table) fail(path.string(), "part colour", "none", "one (a self-contained stack), or a table");
+  return Bsdf(file.bsdf, std::move(table));
 }
 
 }  // namespace gonio

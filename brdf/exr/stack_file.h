@@ -1,22 +1,19 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 
-#include <gonio/brdf/bsdf/compact_bsdf.h>
+#include <gonio/brdf/bsdf/bsdf.h>
 
 namespace gonio {
 
 /// A stack of diagrams as an OpenEXR file, readable by any viewer of multi-part images. The layout
 /// is described in docs/stack-file.md.
 struct StackFile {
-  StackGrid diagrams;   ///< with their chart; densities normalised
-  Colour colour;        ///< empty if the file has none; such a file needs its table for f_r
-  std::string name;     ///< of the material
-  std::string source;   ///< file the stack was made of, without its folder; empty if unknown
-  /// What the diagrams were built for; nearest and mixture can always be used instead.
-  Interpolation interpolation = Interpolation::displacement;
-  Storage storage = Storage::float32;  ///< what the densities are to be held in
+  BsdfData bsdf;       ///< densities normalised; without colours f_r is that of the table
+  std::string name;    ///< of the material
+  std::string source;  ///< file the stack was made of, without its folder; empty if unknown
 };
 
 /// Version of the layout that save_stack() writes; load_stack() reads this one only.
@@ -34,7 +31,8 @@ StackFile load_stack(const std::filesystem::path& path);
 /// True if the file begins like an OpenEXR file. @throws Error if it cannot be read.
 bool is_exr(const std::filesystem::path& path);
 
-/// What a renderer calls. @throws Error as load_stack(), and for a file without colour.
-CompactBsdf load_compact(const std::filesystem::path& path);
+/// What a renderer calls: milliseconds. With a table f_r is the table's, otherwise that of the file's colours.
+/// @throws Error as load_stack() and Bsdf do, and for a file without colours where there is no table.
+Bsdf load_bsdf(const std::filesystem::path& path, std::shared_ptr<const BrdfTable> table = nullptr);
 
 }  // namespace gonio

@@ -1,10 +1,11 @@
 #include <gonio/brdf/proof/baseline.h>
-#include <gonio/brdf/bsdf/frame.h>
+#include <gonio/brdf/value/frame.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include <gonio/mapping/base/error.h>
+#include <gonio/mapping/charts/hemisphere.h>
 
 namespace gonio {
 namespace {

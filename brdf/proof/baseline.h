@@ -3,11 +3,12 @@
 #include <memory>
 #include <optional>
 
-#include <gonio/brdf/bsdf/sampler.h>
+#include <gonio/brdf/table/table.h>
+#include <gonio/brdf/value/bsdf_sample.h>
 
 namespace gonio {
 
-/// The samplers that a stack is measured against, with the interface of Sampler and the same rules
+/// The samplers that a stack is measured against, with the interface of Bsdf and the same rules
 /// (one-sided, immutable, no allocation). f_r comes from the table.
 
 /// Every direction of the hemisphere alike: pdf = 1 / 2 pi.

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <gonio/brdf/bsdf/frame.h>
+#include <gonio/brdf/value/frame.h>
 #include <gonio/brdf/proof/edges.h>
 #include <gonio/brdf/proof/incident.h>
 #include <gonio/brdf/proof/random.h>
@@ -41,15 +41,15 @@ Subject subject_of_stack(const S& stack) {
 
 }  // namespace
 
-Subject subject_of(const Sampler& sampler) {
-  Subject subject = subject_of<Sampler>(sampler);
-  subject.direction = [&stack = sampler.stack()](const glm::vec3& wi, const glm::vec2& u) -> std::optional<glm::vec3> {
+Subject subject_of(const StackBsdf& bsdf) {
+  Subject subject = subject_of<StackBsdf>(bsdf);
+  subject.direction = [&stack = bsdf.stack()](const glm::vec3& wi, const glm::vec2& u) -> std::optional<glm::vec3> {
     const IncidentFrame frame(wi);
     const auto s = stack.sample(frame.theta_i, u.x, u.y);
     if (!(wi.z > 0 && s.pdf > 0 && s.wo.z > 0)) return std::nullopt;
     return frame.to_surface(s.wo);
   };
-  subject.invert = inverse_of(sampler.stack());
+  subject.invert = inverse_of(bsdf.stack());
   return subject;
 }
 

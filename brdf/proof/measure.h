@@ -5,13 +5,14 @@
 #include <optional>
 
 #include <gonio/brdf/proof/chi_square.h>
-#include <gonio/brdf/bsdf/sampler.h>
+#include <gonio/brdf/bsdf/bsdf.h>
+#include <gonio/brdf/proof/stack_bsdf.h>
 #include <gonio/mapping/stack/packed_stack.h>
 
 namespace gonio::proof {
 
-/// A sampler under test, whatever its type: what Sampler offers, as functions. Frames and measures
-/// are those of Sampler. `f_r` is the BRDF that the weights ought to represent.
+/// A sampler under test, whatever its type: what Bsdf offers, as functions. Frames and measures
+/// are those of Bsdf. `f_r` is the BRDF that the weights ought to represent.
 struct Subject {
   std::function<std::optional<BsdfSample>(const glm::vec3& wi, const glm::vec2& u)> sample;
   std::function<double(const glm::vec3& wi, const glm::vec3& wo)> pdf;
@@ -22,7 +23,7 @@ struct Subject {
   std::function<std::optional<glm::vec2>(const glm::vec3& wi, const glm::vec3& wo)> invert = nullptr;
 };
 
-/// A subject of anything with Sampler's interface. The sampler must outlive it.
+/// A subject of anything with Bsdf's sample(), pdf() and eval(). It must outlive the subject.
 template <class S>
 Subject subject_of(const S& sampler) {
   return {[&](const glm::vec3& wi, const glm::vec2& u) { return sampler.sample(wi, u); },
@@ -30,8 +31,8 @@ Subject subject_of(const S& sampler) {
           [&](const glm::vec3& wi, const glm::vec3& wo) { return sampler.eval(wi, wo); }};
 }
 
-/// The same for a Sampler, with directions from its stack and the inverse of it.
-Subject subject_of(const Sampler& sampler);
+/// The same with directions from the stack and the inverse of it.
+Subject subject_of(const StackBsdf& bsdf);
 
 /// A stack alone, without a BRDF: weights are 1, and `f_r` is empty. measure() cannot take it,
 /// check_invariants() can. The stack must outlive it.

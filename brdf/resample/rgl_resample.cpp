@@ -269,7 +269,7 @@ class Resampler {
 }  // namespace
 
 RglFile resample_as_rgl(const Reflectance& f_r, std::string description, const RglSize& size,
-                        const RglProgress& progress) {
+                        const Progress& progress) {
   if (size.side < 2 || size.vndf < 4 || size.incident < first_incident) {
     throw Error("RGL file: found " + std::to_string(size.side) + " nodes of luminance, " +
                 std::to_string(size.vndf) + " of vndf, " + std::to_string(size.incident) +
@@ -291,7 +291,7 @@ RglFile resample_as_rgl(const Reflectance& f_r, std::string description, const R
   std::vector<Middle> middles;
   for (std::size_t k = 0; k + 1 < slices.size(); ++k) middles.push_back({slices[k]->theta_i, {}, 0});
   while (slices.size() < size.incident) {
-    if (progress) progress(slices.size());
+    if (progress) progress(std::min(1.0, static_cast<double>(slices.size()) / static_cast<double>(size.incident)));
     parallel_for(middles.size(), [&](std::size_t k) {
       Middle& middle = middles[k];
       if (middle.slice) return;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <gonio/brdf/formats/rgl/rgl.h>
+#include <gonio/mapping/base/progress.h>
 
 #include <functional>
 #include <glm/vec3.hpp>
@@ -11,9 +12,6 @@ namespace gonio {
 /// f_r(wi, wo) per RGB channel [1/sr] for two directions above the horizon; called from several
 /// threads.
 using Reflectance = std::function<glm::vec3(const glm::vec3& wi, const glm::vec3& wo)>;
-
-/// Called now and then with the number of incident angles so far.
-using RglProgress = std::function<void(std::size_t incident)>;
 
 /// Limits of resample_as_rgl().
 struct RglSize {
@@ -43,6 +41,6 @@ struct RglSize {
 /// docs/renderers.md has the errors. Deterministic; uses all cores.
 /// @throws Error for sizes out of range
 RglFile resample_as_rgl(const Reflectance& f_r, std::string description, const RglSize& size = {},
-                        const RglProgress& progress = {});
+                        const Progress& progress = {});
 
 }  // namespace gonio

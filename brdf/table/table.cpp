@@ -1,5 +1,5 @@
 #include <gonio/mapping/base/bytes.h>
-#include <gonio/brdf/bsdf/frame.h>
+#include <gonio/brdf/value/frame.h>
 #include <gonio/brdf/formats/sniff.h>
 #include <gonio/brdf/table/table.h>
 #include <gonio/mapping/base/error.h>

@@ -10,6 +10,7 @@
 #include <gonio/brdf/formats/mbsdf.h>
 #include <gonio/brdf/formats/merl.h>
 #include <gonio/brdf/formats/rgl/rgl.h>
+#include <gonio/brdf/value/luminance.h>
 
 namespace gonio {
 
@@ -60,10 +61,5 @@ BrdfTable load_table(const std::filesystem::path& path, const CellPolicies& poli
 
 /// `table` itself. @throws Error if it is null; `user` says what needs it.
 std::shared_ptr<const BrdfTable> required_table(std::shared_ptr<const BrdfTable> table, const std::string& user);
-
-/// Rec. 709 luminance of a linear RGB triple.
-inline float luminance(const glm::vec3& rgb) noexcept {
-  return 0.2126f * rgb.r + 0.7152f * rgb.g + 0.0722f * rgb.b;
-}
 
 }  // namespace gonio

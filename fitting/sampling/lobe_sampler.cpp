@@ -1,4 +1,4 @@
-#include <gonio/brdf/bsdf/frame.h>
+#include <gonio/brdf/value/frame.h>
 #include <gonio/mapping/base/parallel.h>
 #include <gonio/fitting/sampling/lobe_sampler.h>
 #include <gonio/fitting/lobes/diffuse.h>

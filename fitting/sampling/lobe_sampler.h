@@ -1,6 +1,6 @@
 #pragma once
 
-#include <gonio/brdf/bsdf/sampler.h>
+#include <gonio/brdf/value/bsdf_sample.h>
 #include <gonio/brdf/table/table.h>
 #include <gonio/fitting/model/model.h>
 #include <gonio/fitting/sampling/sheared_ggx.h>

@@ -38,8 +38,6 @@ const char* to_string(Interpolation interpolation) noexcept {
   }
 }
 
-const char* to_string(Chart chart) noexcept { return chart == Chart::half ? "half" : "outgoing"; }
-
 template <class T>
 Stack<T>::Stack(const StackGrid& grid, Interpolation interpolation) : interpolation_(interpolation), chart_(grid.chart) {
   if (grid.theta_i.empty() || grid.theta_i.size() != grid.diagrams.size())

@@ -6,6 +6,7 @@
 
 #include <gonio/mapping/diagram/blend.h>
 #include <gonio/mapping/diagram/displacement.h>
+#include <gonio/mapping/charts/chart.h>
 #include <gonio/mapping/charts/half_vector.h>
 
 namespace gonio {
@@ -22,33 +23,11 @@ inline constexpr Interpolation interpolations[] = {Interpolation::nearest, Inter
                                                    Interpolation::displacement, Interpolation::blend};
 const char* to_string(Interpolation interpolation) noexcept;
 
-/// What the disk of a diagram stands for.
-enum class Chart {
-  outgoing,  ///< the hemisphere of outgoing directions, flattened: r = sqrt(1 - cos theta_o), phi of wo
-  half       ///< the half vectors that reflect wi to directions above the horizon; see HalfVectorChart
-};
-
-inline constexpr Chart charts[] = {Chart::outgoing, Chart::half};
-const char* to_string(Chart chart) noexcept;
-
 /// A stack of diagrams as data, in double: what a Stack is built from and a stack file holds.
 struct StackGrid {
   std::vector<double> theta_i;        ///< K >= 1 incident angles [rad], ascending, in [0, pi/2]
   std::vector<DiagramGrid> diagrams;  ///< one per angle, each with its own lines; all half or all full
   Chart chart = Chart::outgoing;
-};
-
-template <class T>
-struct DirectionSample {
-  Vec3<T> wo;  ///< unit, wo.z > 0, phi relative to the azimuth of wi
-  T pdf;       ///< per solid angle [1/sr]; 0 where the density vanishes
-};
-
-/// What inverting the map of a stack gives.
-template <class T>
-struct SquareInverse {
-  SquarePoint<T> at;  ///< the (u, v) that sample() maps to the direction
-  T pdf;              ///< of the direction, per solid angle [1/sr], > 0
 };
 
 /// Diagrams indexed by the incident angle, and the map between unit square and hemisphere for any

@@ -1,9 +1,9 @@
-// The kernels of BatchSampler, once per instruction set: included by their own files alone.
-#if defined(GONIO_BATCH_SAMPLER_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef GONIO_BATCH_SAMPLER_INL_H
-#undef GONIO_BATCH_SAMPLER_INL_H
+// The kernels of Bsdf, once per instruction set: included by their own files alone.
+#if defined(GONIO_BATCH_BSDF_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef GONIO_BATCH_BSDF_INL_H
+#undef GONIO_BATCH_BSDF_INL_H
 #else
-#define GONIO_BATCH_SAMPLER_INL_H
+#define GONIO_BATCH_BSDF_INL_H
 #endif
 
 #include <gonio/brdf/batch/colour-inl.h>
@@ -39,7 +39,7 @@ HWY_INLINE void draw_kernel(const BatchLayout& layout, const BatchColour* colour
       const Direction wo = to_surface(hn::Load(d, cos_phi + k), hn::Load(d, sin_phi + k), {hn::LoadU(d, y[0] + k), hn::LoadU(d, y[1] + k), z});
       hn::StoreU(hn::IfThenElseZero(valid, wo.x), d, y[0] + k), hn::StoreU(hn::IfThenElseZero(valid, wo.y), d, y[1] + k);
       hn::StoreU(hn::IfThenElseZero(valid, z), d, y[2] + k), hn::StoreU(hn::IfThenElseZero(valid, pdf), d, y[3] + k);
-      const V share = hn::IfThenElseZero(valid, hn::Min(hn::Mul(z, set(1 / CompactBsdf::min_cosine)), set(1)));
+      const V share = hn::IfThenElseZero(valid, hn::Min(hn::Mul(z, set(1 / Colour::min_cosine)), set(1)));
       for (int i = 4; i < outputs; ++i) hn::StoreU(hn::IfThenElseZero(valid, hn::Mul(hn::LoadU(d, y[i] + k), share)), d, y[i] + k);
     }
   });
@@ -64,7 +64,7 @@ HWY_INLINE void eval_kernel(const BatchLayout& layout, const BatchColour& colour
       const Inverted at = invert_stack(layout, place_of(layout.angles, frame.i), frame.i.theta, wo);
       const M valid = hn::And(hn::And(frame.above, is_above(wo)), hn::Gt(at.pdf, zero()));
       hn::Store(frame.i.theta, d, theta_i + k), hn::Store(frame.i.r, d, r + k), hn::Store(at.u, d, u + k), hn::Store(at.v, d, v + k);
-      hn::Store(hn::IfThenElseZero(valid, hn::Div(at.pdf, hn::Max(wo.z, set(CompactBsdf::min_cosine)))), d, scale + k);
+      hn::Store(hn::IfThenElseZero(valid, hn::Div(at.pdf, hn::Max(wo.z, set(Colour::min_cosine)))), d, scale + k);
     }
     find_colours(colour, elements, Places(colour.angles, elements, theta_i, r), u, v, y[0], y[1], y[2]);
     for (float* channel : y)

@@ -2,46 +2,33 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include <gonio/brdf/table/table.h>
-#include <gonio/mapping/stack/stack.h>
+#include <gonio/mapping/charts/concentric.h>
 
 namespace gonio {
 
-/// The map that a colour belongs to: (theta_i [rad], u, v) to a direction and its pdf.
-using DirectionMap = std::function<DirectionSample<float>(float theta_i, float u, float v)>;
-
-/// That of a Stack or PackedStack, which must outlive it.
-template <class AnyStack>
-DirectionMap direction_map(const AnyStack& stack) {
-  return [&stack](float theta_i, float u, float v) { return stack.sample(theta_i, u, v); };
-}
-
 /// The colour of a stack in the stack's own unit square: W(theta_i, u, v) = f_r cos theta_o / pdf per
 /// RGB channel, at some incident angles of its own. Sampling has taken the peaks out of W, so a few
-/// cells are enough for a BSDF that needs its table no more.
+/// cells are enough for a BSDF that does without its table: f_r = W pdf / max(cos theta_o, min_cosine).
 ///
 /// Cell-centred; `side` cells in u over [0, 1] and side/2 in v over [1/2, 1]: the lower half of the
 /// square is the mirror image. Cells are 16-bit numbers (code16.h) in units of the largest: within 2^-12,
 /// relative, of the value given, down to 2^-20 of the largest.
 ///
-/// Thread safety: immutable; concurrent use is safe. No member but the constructors, from_table() and values()
-/// allocates.
+/// Thread safety: immutable; concurrent use is safe. No member but the constructors and values() allocates.
 class Colour {
  public:
+  /// Next to the horizon W pdf does not fall to 0 as fast as the cosine does. There f_r stays what it is here.
+  static constexpr float min_cosine = 1e-3f;
+
   Colour() = default;
 
   /// @param theta_i K >= 1 incident angles [rad], ascending, in [0, pi/2].
   /// @param values K x side/2 x side weights, v slower than u. @throws Error for bad angles, a wrong count, or
   ///   values that are not from 0 to 1e6.
   Colour(std::vector<float> theta_i, int side, const std::vector<glm::vec3>& values);
-
-  /// The mean weight of every cell, by stratified samples, 128 x 64 over all cells but at least 2 x 2 in each: the
-  /// albedo of the table is kept.
-  static Colour from_table(const BrdfTable& table, const DirectionMap& map, const std::vector<float>& theta_i, int side);
 
   /// W at a point of the square: bilinear in (u, v), linear between the angles, constant beyond them.
   glm::vec3 eval(float theta_i, SquarePoint<float> at) const noexcept;

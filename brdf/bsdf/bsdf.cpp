@@ -1,0 +1,91 @@
+#include <gonio/brdf/bsdf/bsdf.h>
+
+#include <utility>
+
+#include <gonio/brdf/batch/batch_bsdf.h>
+#include <gonio/brdf/bsdf/material_hints.h>
+#include <gonio/brdf/table/table.h>
+#include <gonio/mapping/base/error.h>
+
+namespace gonio {
+
+struct Bsdf::State {
+  State(const BsdfData& data, std::shared_ptr<const BrdfTable> from)
+      : layout(sampled_stack(data)), colour(from ? Colour() : data.colour, layout), table(std::move(from)), storage(data.storage) {
+    if (!table && data.colour.empty()) throw Error("BSDF: f_r: found neither a table nor a colour, expected one of them");
+  }
+
+  const BatchColour* own_colour() const noexcept { return table ? nullptr : &colour; }
+  bool draw(const glm::vec3& wi, const glm::vec2& u, BsdfSample& out) const noexcept {
+    if (!draw_one(layout, own_colour(), wi, u, out)) return false;
+    if (table) out.weight = table->eval(wi, out.wo) * (out.wo.z / out.pdf);
+    return true;
+  }
+
+  BatchLayout layout;
+  BatchColour colour;                      // empty: f_r is the table's
+  std::shared_ptr<const BrdfTable> table;  // null: f_r is the colour's
+  Storage storage;
+  MaterialHints hints{[this](const glm::vec3& wi, const glm::vec2& u) {
+    BsdfSample s;
+    return draw(wi, u, s) ? std::optional(s) : std::nullopt;
+  }};
+};
+
+namespace {
+
+void set_at(Arrays3 a, std::size_t k, const glm::vec3& value) noexcept { a.x[k] = value.x, a.y[k] = value.y, a.z[k] = value.z; }
+glm::vec3 get_at(ConstArrays3 a, std::size_t k) noexcept { return {a.x[k], a.y[k], a.z[k]}; }
+
+}  // namespace
+
+Bsdf::Bsdf(const BsdfData& data, std::shared_ptr<const BrdfTable> table) : state_(std::make_shared<const State>(data, std::move(table))) {}
+
+std::optional<BsdfSample> Bsdf::sample(const glm::vec3& wi, const glm::vec2& u) const noexcept {
+  BsdfSample s;
+  if (!state_->draw(wi, u, s)) return std::nullopt;
+  return s;
+}
+
+float Bsdf::pdf(const glm::vec3& wi, const glm::vec3& wo) const noexcept { return pdf_one(state_->layout, wi, wo); }
+
+glm::vec3 Bsdf::eval(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
+  return state_->table ? state_->table->eval(wi, wo) : eval_one(state_->layout, state_->colour, wi, wo);
+}
+
+void Bsdf::sample_n(std::size_t count, ConstArrays3 wi, const float* u, const float* v, Arrays3 wo, float* pdf,
+                    Arrays3 weight) const noexcept {
+  const State& s = *state_;
+  if (!s.table) {
+    draw_many(s.layout, s.colour, count, {wi.x, wi.y, wi.z, u, v}, {wo.x, wo.y, wo.z, pdf, weight.x, weight.y, weight.z});
+    return;
+  }
+  draw_many(s.layout, count, {wi.x, wi.y, wi.z, u, v}, {wo.x, wo.y, wo.z, pdf});
+  for (std::size_t k = 0; k < count; ++k)
+    set_at(weight, k, pdf[k] > 0 ? s.table->eval(get_at(wi, k), get_at(wo, k)) * (wo.z[k] / pdf[k]) : glm::vec3(0));
+}
+
+void Bsdf::pdf_n(std::size_t count, ConstArrays3 wi, ConstArrays3 wo, float* pdf) const noexcept {
+  pdf_many(state_->layout, count, {wi.x, wi.y, wi.z, wo.x, wo.y, wo.z}, {pdf});
+}
+
+void Bsdf::eval_n(std::size_t count, ConstArrays3 wi, ConstArrays3 wo, Arrays3 f_r) const noexcept {
+  if (!state_->table) {
+    eval_many(state_->layout, state_->colour, count, {wi.x, wi.y, wi.z, wo.x, wo.y, wo.z}, {f_r.x, f_r.y, f_r.z});
+    return;
+  }
+  for (std::size_t k = 0; k < count; ++k) set_at(f_r, k, state_->table->eval(get_at(wi, k), get_at(wo, k)));
+}
+
+glm::vec3 Bsdf::albedo(float theta_i) const noexcept { return state_->hints.albedo(theta_i); }
+float Bsdf::roughness() const noexcept { return state_->hints.roughness(); }
+Chart Bsdf::chart() const noexcept { return state_->layout.half_chart ? Chart::half : Chart::outgoing; }
+Interpolation Bsdf::interpolation() const noexcept { return state_->layout.interpolation; }
+Storage Bsdf::storage() const noexcept { return state_->storage; }
+std::size_t Bsdf::incident_angles() const noexcept { return static_cast<std::size_t>(state_->layout.angles.count); }
+bool Bsdf::self_contained() const noexcept { return !state_->table; }
+std::size_t Bsdf::bytes() const noexcept {
+  return sizeof(*this) + sizeof(State) + state_->layout.bytes() + state_->colour.bytes();
+}
+
+}  // namespace gonio
