@@ -18,20 +18,15 @@ RglFile resample(const std::filesystem::path& in, const std::filesystem::path& o
   ProgressLine progress("writing " + out.string());
   const std::string text = description.empty() ? in.stem().string() : description;
   const RglSize size;
-  RglFile file = resample_as_rgl(f_r, text, size, [&](std::size_t incident) {
-    progress.update(static_cast<double>(incident) / static_cast<double>(size.incident));
-  });
+  RglFile file = resample_as_rgl(f_r, text, size, [&](double done) { progress.update(done); });
   return file;
 }
 
 RglFile to_rgl(const std::filesystem::path& in, const std::filesystem::path& out,
                const CellPolicies& policies, bool rgb_only) {
   if (is_exr(in)) {
-    StackFile stack = load_stack(in);
-    if (stack.colour.empty()) {
-      throw Error(in.string() + ": part colour: found none, expected one (a self-contained stack)");
-    }
-    const CompactBsdf bsdf(stack.diagrams, stack.interpolation, stack.storage, std::move(stack.colour));
+    const StackFile stack = load_stack(in);
+    const Bsdf bsdf = load_bsdf(in);
     return resample(in, out, [&](const auto& wi, const auto& wo) { return bsdf.eval(wi, wo); },
                     stack.name);
   }

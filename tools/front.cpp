@@ -10,8 +10,8 @@
 namespace gonio {
 
 FrontPoint front_point(const CompactFit& fit) {
-  const CompactBsdf bsdf = fit.bsdf();
-  return {std::string("compact/") + to_string(fit.diagrams.chart), fit.bytes, time_sampler(bsdf, TimedQueries(bsdf)).sample,
+  const Bsdf bsdf(fit.data);
+  return {std::string("compact/") + to_string(bsdf.chart()), bsdf.bytes(), time_sampler(bsdf, TimedQueries(bsdf)).sample,
           fit.quality.worst_relvar, fit.quality.eval_error};
 }
 

@@ -1,5 +1,5 @@
 // Tables: a file of RGL that GONIO_TEST_DATA has (none: skipped), made-up ones in the layouts of MERL and MBSDF, and
-// samplers with RGB weights, one at a time and in batches, self-contained and backed by a table.
+// BSDFs with RGB weights, in plain scalar code, one at a time and in batches, self-contained and backed by a table.
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>
@@ -7,11 +7,13 @@
 #include <string>
 
 #include <gonio/brdf/proof/baseline.h>
-#include <gonio/brdf/batch/batch_sampler.h>
+#include <gonio/brdf/bsdf/bsdf.h>
+#include <gonio/brdf/build/build_stack.h>
+#include <gonio/brdf/build/colour_of_table.h>
 #include <gonio/brdf/build/fit_compact.h>
 #include <gonio/brdf/proof/gallery.h>
 #include <gonio/brdf/proof/random.h>
-#include <gonio/brdf/bsdf/sampler.h>
+#include <gonio/brdf/proof/stack_bsdf.h>
 #include <gonio/brdf/resample/table_resample.h>
 #include <gonio/tools/bench/stacks.h>
 
@@ -91,13 +93,13 @@ void merl_eval(benchmark::State& state) {
 }
 
 /// A self-contained stack of 32 diagrams of 33 x 33 lines with 8 x 4 colours each.
-CompactBsdf coloured(Interpolation interpolation, Chart chart) {
+BsdfData coloured(Interpolation interpolation, Chart chart) {
   const StackGrid grid = lobe_stack(32, 33, 33, chart);
   std::vector<float> theta_i;
   for (const double theta : grid.theta_i) theta_i.push_back(static_cast<float>(theta));
-  return CompactBsdf(grid, interpolation, Storage::float32,
-                     Colour(theta_i, 8, std::vector<glm::vec3>(32 * 32, glm::vec3(0.5f, 0.4f, 0.3f))));
+  return {grid, interpolation, Storage::float32, Colour(theta_i, 8, std::vector<glm::vec3>(32 * 32, glm::vec3(0.5f, 0.4f, 0.3f)))};
 }
+
 enum class Call { sample, pdf, eval };
 
 template <class S>
@@ -114,10 +116,8 @@ void one_by_one(benchmark::State& state, Call call, const S& sampler) {
   state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * queries));
 }
 
-template <class S>
-void in_batches(benchmark::State& state, Call call, const S& sampler) {
+void in_batches(benchmark::State& state, Call call, const Bsdf& bsdf) {
   const Directions d(std::make_shared<const BrdfTable>(made_grid()));
-  const BatchSampler batch(sampler);
   std::vector<float> a[12];
   for (auto& array : a) array.resize(queries);
   for (std::size_t k = 0; k < queries; ++k) {
@@ -126,50 +126,46 @@ void in_batches(benchmark::State& state, Call call, const S& sampler) {
   }
   const Arrays3 wi{a[0].data(), a[1].data(), a[2].data()}, wo{a[5].data(), a[6].data(), a[7].data()},
       rgb{a[9].data(), a[10].data(), a[11].data()};
-  batch.sample_n(queries, wi, a[3].data(), a[4].data(), wo, a[8].data(), rgb);
+  bsdf.sample_n(queries, wi, a[3].data(), a[4].data(), wo, a[8].data(), rgb);
   for (auto _ : state) {
-    if (call == Call::sample) batch.sample_n(queries, wi, a[3].data(), a[4].data(), wo, a[8].data(), rgb);
-    if (call == Call::pdf) batch.pdf_n(queries, wi, wo, a[8].data());
-    if (call == Call::eval) batch.eval_n(queries, wi, wo, rgb);
+    if (call == Call::sample) bsdf.sample_n(queries, wi, a[3].data(), a[4].data(), wo, a[8].data(), rgb);
+    if (call == Call::pdf) bsdf.pdf_n(queries, wi, wo, a[8].data());
+    if (call == Call::eval) bsdf.eval_n(queries, wi, wo, rgb);
   }
   state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * queries));
 }
 
-/// As Sampler or CompactBsdf has it; one at a time by BatchSampler; in batches.
-enum class Form { plain, lanes, batch };
-constexpr std::pair<Form, const char*> forms[] = {{Form::plain, ""}, {Form::lanes, "_lanes"}, {Form::batch, "_batch"}};
-template <class S>
-void look_up(benchmark::State& state, Form form, Call call, const S& sampler) {
-  if (form == Form::plain) one_by_one(state, call, sampler);
-  if (form == Form::lanes) one_by_one(state, call, BatchSampler(sampler));
-  if (form == Form::batch) in_batches(state, call, sampler);
+/// By StackBsdf; by Bsdf, one at a time and in batches.
+enum class Form { scalar, one, batch };
+constexpr std::pair<Form, const char*> forms[] = {{Form::scalar, "_scalar"}, {Form::one, ""}, {Form::batch, "_batch"}};
+void look_up(benchmark::State& state, Form form, Call call, const BsdfData& data, const std::shared_ptr<const BrdfTable>& table = nullptr) {
+  if (form == Form::scalar) one_by_one(state, call, StackBsdf(data, table));
+  if (form == Form::one) one_by_one(state, call, Bsdf(data, table));
+  if (form == Form::batch) in_batches(state, call, Bsdf(data, table));
 }
 
-/// Backed by the file of RGL that rgl_sample() has, with the stack that is built for it.
-void rgl_backed(benchmark::State& state, Form form) {
+/// The file of RGL that rgl_sample() has, as make_bsdf() makes it: with its table's f_r or with colours of its own.
+void rgl_bsdf(benchmark::State& state, Form form, BsdfValue value) {
   const auto table = rgl(state);
   if (!table) return;
-  static const Sampler sampler(table);
-  look_up(state, form, Call::sample, sampler);
-}
-/// What `gonio convert` makes of it.
-void rgl_compact(benchmark::State& state, Form form) {
-  const auto table = rgl(state);
-  if (!table) return;
-  static const CompactBsdf sampler = fit_compact(*table).best().bsdf();
-  look_up(state, form, Call::sample, sampler);
+  static const BsdfData data = fit_compact(*table).best().data;
+  look_up(state, form, Call::sample, data, value == BsdfValue::table ? table : nullptr);
 }
 /// A displacement stack with colours of its own.
-void rgl_contained(benchmark::State& state, Form form) {
+void rgl_displacement(benchmark::State& state, Form form) {
   const auto table = rgl(state);
   if (!table) return;
-  static const CompactBsdf sampler = [&] {
-    const StackGrid grid = build_stack(*table);
-    const Stack<float> stack(grid, Interpolation::displacement);
-    return CompactBsdf(grid, Interpolation::displacement, Storage::float32,
-                       Colour::from_table(*table, direction_map(stack), stack.theta_i(), 8));
+  static const BsdfData data = [&] {
+    BsdfOptions options;
+    options.interpolation = Interpolation::displacement;
+    options.meridians = options.parallels = 40;
+    options.budget = 480 * 1024;
+    BsdfData made{build_stack(*table, options), options.interpolation, Storage::float32, {}};
+    const Stack<float> stack = sampled_stack(made);
+    made.colour = colour_of_table(*table, direction_map(stack), stack.theta_i(), 8);
+    return made;
   }();
-  look_up(state, form, Call::sample, sampler);
+  look_up(state, form, Call::sample, data);
 }
 
 const int registered = [] {
@@ -184,9 +180,9 @@ const int registered = [] {
                                      });
   }
   for (const auto& [form, end] : forms) {
-    benchmark::RegisterBenchmark((std::string("rgl_stack_sample") + end).c_str(), rgl_backed, form);
-    benchmark::RegisterBenchmark((std::string("rgl_compact_sample") + end).c_str(), rgl_compact, form);
-    benchmark::RegisterBenchmark((std::string("rgl_contained_sample") + end).c_str(), rgl_contained, form);
+    benchmark::RegisterBenchmark((std::string("rgl_table_sample") + end).c_str(), rgl_bsdf, form, BsdfValue::table);
+    benchmark::RegisterBenchmark((std::string("rgl_colour_sample") + end).c_str(), rgl_bsdf, form, BsdfValue::colour);
+    benchmark::RegisterBenchmark((std::string("rgl_displacement_sample") + end).c_str(), rgl_displacement, form);
   }
   return 0;
 }();

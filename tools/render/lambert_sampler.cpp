@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include <gonio/mapping/charts/concentric.h>
-#include <gonio/tools/render/bsdf.h>
+#include <gonio/tools/render/scatter.h>
 
 namespace gonio {
 

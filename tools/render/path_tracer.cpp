@@ -97,7 +97,7 @@ PathResult PathTracer::trace(float x, float y, PathSequence& random) const noexc
   }
 }
 
-glm::vec3 PathTracer::direct_light(const glm::vec3& from, const glm::vec3& normal, const Bsdf& bsdf, const glm::mat3& frame, const glm::vec3& wi,
+glm::vec3 PathTracer::direct_light(const glm::vec3& from, const glm::vec3& normal, const Scatter& bsdf, const glm::mat3& frame, const glm::vec3& wi,
                                    float pick, glm::vec2 u) const noexcept {
   const auto light = lights_.sample(from, pick, u);
   if (!light || !(light->pdf > 0)) return glm::vec3(0);

@@ -42,7 +42,7 @@ class PathTracer {
 
  private:
   glm::vec3 camera_direction(float x, float y) const noexcept;
-  glm::vec3 direct_light(const glm::vec3& from, const glm::vec3& normal, const Bsdf& bsdf, const glm::mat3& frame, const glm::vec3& wi, float pick,
+  glm::vec3 direct_light(const glm::vec3& from, const glm::vec3& normal, const Scatter& bsdf, const glm::mat3& frame, const glm::vec3& wi, float pick,
                          glm::vec2 u) const noexcept;
 
   const Scene& scene_;

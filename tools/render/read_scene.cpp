@@ -102,7 +102,7 @@ class SceneReader {
       if (f.has("albedo") == f.has("file")) f.fail("file", f.has("file") ? "albedo as well" : "none", "file or albedo");
       if (f.has("albedo")) {
         if (f.has("sampling")) f.fail("sampling", "one", "none: a Lambertian is sampled by its cosine");
-        m.bsdf = make_bsdf(LambertSampler(f.triple_or_number("albedo", 0, 1)));
+        m.bsdf = make_scatter(LambertSampler(f.triple_or_number("albedo", 0, 1)));
       } else {
         load(m, f);
       }
@@ -116,7 +116,7 @@ class SceneReader {
     const fs::path path = file(f);
     if (is_exr(path)) {
       if (f.has("sampling")) f.fail("sampling", "one", "none: a stack file is sampled by its stack");
-      m.bsdf = make_bsdf(load_compact(path));
+      m.bsdf = make_scatter(load_bsdf(path));
       return;
     }
     const bool model = is_model_file(path);

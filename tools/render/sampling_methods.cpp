@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include <gonio/brdf/build/make_bsdf.h>
 #include <gonio/brdf/proof/baseline.h>
+#include <gonio/brdf/proof/stack_bsdf.h>
 #include <gonio/fitting/sampling/lobe_sampler.h>
 #include <gonio/mapping/base/error.h>
 #include <gonio/tools/table_fits.h>
@@ -27,7 +29,7 @@ std::string sampling_method_names() {
   return names;
 }
 
-MethodBuilder::MethodBuilder(std::shared_ptr<const BrdfTable> table, std::optional<LobeModel> model, const StackOptions& options)
+MethodBuilder::MethodBuilder(std::shared_ptr<const BrdfTable> table, std::optional<LobeModel> model, const BsdfOptions& options)
     : table_(std::move(table)), options_(options), given_(model.has_value()) {
   if (model) fits_.push_back(std::move(*model));
 }
@@ -44,28 +46,32 @@ const LobeModel& MethodBuilder::lobes(std::size_t count) {
 }
 
 const StackGrid& MethodBuilder::outgoing(const Progress& progress) {
-  if (!outgoing_) outgoing_ = build_stack(*table_, options_, progress);
+  if (!outgoing_) {
+    BsdfOptions options = options_;
+    options.interpolation = Interpolation::displacement;
+    outgoing_ = build_stack(*table_, options, progress);
+  }
   return *outgoing_;
 }
 
-std::shared_ptr<const Bsdf> MethodBuilder::build(SamplingMethod method, const Progress& progress) {
+std::shared_ptr<const Scatter> MethodBuilder::build(SamplingMethod method, const Progress& progress) {
   if (!available(method)) throw Error(table_->info().source + ": sampling: found " + to_string(method) + ", expected a method for a " + table_->info().format + " file");
   switch (method) {
-    case SamplingMethod::automatic: return make_bsdf(Sampler(table_, progress));
-    case SamplingMethod::cosine: return make_bsdf(CosineSampler(table_));
-    case SamplingMethod::lobes1: return make_bsdf(LobeSampler(table_, lobes(1)));
-    case SamplingMethod::lobes2: return make_bsdf(LobeSampler(table_, lobes(2)));
-    case SamplingMethod::lobes3: return make_bsdf(LobeSampler(table_, lobes(3)));
-    case SamplingMethod::nearest: return make_bsdf(Sampler(table_, outgoing(progress), Interpolation::nearest));
-    case SamplingMethod::mixture: return make_bsdf(Sampler(table_, outgoing(progress), Interpolation::mixture));
-    case SamplingMethod::displacement: return make_bsdf(Sampler(table_, outgoing(progress), Interpolation::displacement));
+    case SamplingMethod::automatic: return make_scatter(make_bsdf(table_, {}, progress));
+    case SamplingMethod::cosine: return make_scatter(CosineSampler(table_));
+    case SamplingMethod::lobes1: return make_scatter(LobeSampler(table_, lobes(1)));
+    case SamplingMethod::lobes2: return make_scatter(LobeSampler(table_, lobes(2)));
+    case SamplingMethod::lobes3: return make_scatter(LobeSampler(table_, lobes(3)));
+    case SamplingMethod::nearest: return make_scatter(Bsdf({outgoing(progress), Interpolation::nearest, Storage::float32, {}}, table_));
+    case SamplingMethod::mixture: return make_scatter(StackBsdf({outgoing(progress), Interpolation::mixture, Storage::float32, {}}, table_));
+    case SamplingMethod::displacement: return make_scatter(Bsdf({outgoing(progress), Interpolation::displacement, Storage::float32, {}}, table_));
     case SamplingMethod::half: {
-      StackOptions options = options_;
+      BsdfOptions options = options_;
       options.chart = Chart::half;
       options.interpolation = Interpolation::blend;
-      return make_bsdf(Sampler(table_, build_stack(*table_, options, progress), Interpolation::blend));
+      return make_scatter(Bsdf({build_stack(*table_, options, progress), Interpolation::blend, Storage::float32, {}}, table_));
     }
-    case SamplingMethod::rgl: return make_bsdf(RglSampler(table_));
+    case SamplingMethod::rgl: return make_scatter(RglSampler(table_));
   }
   throw Error("sampling: found none, expected one of " + sampling_method_names());
 }

@@ -2,7 +2,7 @@
 
 #include <gonio/brdf/build/build_stack.h>
 #include <gonio/fitting/model/model.h>
-#include <gonio/tools/render/bsdf.h>
+#include <gonio/tools/render/scatter.h>
 
 #include <functional>
 #include <memory>
@@ -14,7 +14,7 @@ namespace gonio {
 
 /// How a measured table is importance-sampled. The value is the table's in all of them.
 enum class SamplingMethod {
-  automatic,     ///< "default": what Sampler builds when it is given the table alone
+  automatic,     ///< "default": what make_bsdf() makes of the table alone
   cosine,
   lobes1, lobes2, lobes3,  ///< LobeSampler with one to three fitted GGX lobes
   nearest, mixture, displacement,  ///< one stack in the outgoing chart, its three interpolations
@@ -37,21 +37,21 @@ class MethodBuilder {
  public:
   /// @param model the lobes if they are known already, as for a fit.json; else they are fitted
   /// @param options of the stacks, but for the default's, which are the library's own
-  explicit MethodBuilder(std::shared_ptr<const BrdfTable> table, std::optional<LobeModel> model = {}, const StackOptions& options = {});
+  explicit MethodBuilder(std::shared_ptr<const BrdfTable> table, std::optional<LobeModel> model = {}, const BsdfOptions& options = {});
 
   /// False for `rgl` and a table that is not RGL, and for numbers of lobes other than the first where the
   /// lobes are known already.
   bool available(SamplingMethod method) const noexcept;
 
   /// @throws Error if it is not available, or the table is black and lobes are asked for.
-  std::shared_ptr<const Bsdf> build(SamplingMethod method, const Progress& progress = {});
+  std::shared_ptr<const Scatter> build(SamplingMethod method, const Progress& progress = {});
 
  private:
   const LobeModel& lobes(std::size_t count);
   const StackGrid& outgoing(const Progress& progress);
 
   std::shared_ptr<const BrdfTable> table_;
-  StackOptions options_;
+  BsdfOptions options_;
   std::vector<LobeModel> fits_;  // one lobe, two, three; or the one that was given
   bool given_ = false;
   std::optional<StackGrid> outgoing_;

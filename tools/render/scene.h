@@ -11,7 +11,7 @@
 #include <gonio/brdf/table/table.h>
 #include <gonio/fitting/model/model.h>
 #include <gonio/mapping/light/emission.h>
-#include <gonio/tools/render/bsdf.h>
+#include <gonio/tools/render/scatter.h>
 #include <gonio/tools/render/environment.h>
 #include <gonio/tools/render/mesh.h>
 #include <gonio/tools/render/sampling_methods.h>
@@ -28,7 +28,7 @@ struct Camera {
 
 struct Material {
   std::string name;
-  std::shared_ptr<const Bsdf> bsdf;  ///< of a measured table: null until build_materials()
+  std::shared_ptr<const Scatter> bsdf;  ///< of a measured table: null until build_materials()
   bool two_sided = true;             ///< the back looks like the front; else it is black
   std::shared_ptr<const BrdfTable> table;  ///< null for materials that have none
   std::optional<LobeModel> model;          ///< that the table was made of

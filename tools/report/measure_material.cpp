@@ -29,38 +29,29 @@ namespace {
 
 constexpr double compact_variance = 0.01;  // relvar of the method `compact`
 
-nlohmann::json stack_params(const AnyStack& held) {
-  const Stack<float> stack = held.unpacked();
-  std::size_t crossings = 0;
-  int meridians = 0, parallels = 0;
-  for (const auto& d : stack.diagrams()) {
-    meridians = std::max(meridians, d.meridians());
-    parallels = std::max(parallels, d.parallels());
-    crossings += static_cast<std::size_t>(d.meridians() * d.parallels());
+nlohmann::json stack_params(const BsdfData& data) {
+  std::size_t crossings = 0, meridians = 0, parallels = 0;
+  for (const DiagramGrid& d : data.diagrams.diagrams) {
+    meridians = std::max(meridians, d.phi.size());
+    parallels = std::max(parallels, d.r.size());
+    crossings += d.phi.size() * d.r.size();
   }
-  return {{"incident", stack.theta_i().size()},
-          {"largest_meridians", meridians},
-          {"largest_parallels", parallels},
-          {"mean_crossings", crossings / stack.theta_i().size()},
-          {"storage", to_string(held.storage())}};
-}
-
-nlohmann::json stack_params(const CompactBsdf& bsdf) {
-  nlohmann::json params = stack_params(bsdf.stack());
-  params["colour_cells"] = bsdf.colour().side() * (bsdf.colour().side() / 2);
-  params["colour_angles"] = bsdf.colour().theta_i().size();
+  nlohmann::json params = {{"incident", data.diagrams.theta_i.size()},
+                           {"largest_meridians", meridians},
+                           {"largest_parallels", parallels},
+                           {"mean_crossings", crossings / data.diagrams.theta_i.size()},
+                           {"storage", to_string(data.storage)}};
+  if (!data.colour.empty()) {
+    params["colour_cells"] = data.colour.side() * (data.colour.side() / 2);
+    params["colour_angles"] = data.colour.theta_i().size();
+  }
   return params;
 }
 
-template <class S>
-bool has_batch_form(const S& sampler) {
-  return sampler.stack().interpolation() != Interpolation::mixture;
-}
-
-/// A compact BSDF as what it is worth to its table: directions and pdf are its own, f_r is the table's.
+/// A BSDF with colours of its own as what it is worth to its table: directions and pdf are its own, f_r is the table's.
 struct AgainstTable {
   std::shared_ptr<const BrdfTable> table;
-  CompactBsdf bsdf;
+  Bsdf bsdf;
 
   std::optional<BsdfSample> sample(const glm::vec3& wi, const glm::vec2& u) const {
     auto s = bsdf.sample(wi, u);
@@ -92,9 +83,7 @@ class Bench {
     method.build_seconds = build_seconds;
     const TimedQueries queries(timed);
     method.ns = time_sampler(timed, queries);
-    if constexpr (std::is_same_v<Timed, Sampler> || std::is_same_v<Timed, CompactBsdf>) {
-      if (has_batch_form(timed)) method.ns_batch = time_batch(BatchSampler(timed), queries);
-    }
+    if constexpr (std::is_same_v<Timed, Bsdf>) method.ns_batch = time_batch(timed, queries);
     methods_.push_back(std::move(method));
     subjects_.push_back(proof::subject_of(*sampler));
     owners_.push_back(std::move(sampler));
@@ -212,20 +201,23 @@ std::size_t add_lobes(const std::shared_ptr<const BrdfTable>& table, MaterialRep
 /// A stack of about that many bytes: at least seven angles, with as many lines as fit.
 void add_small_stack(const std::shared_ptr<const BrdfTable>& table, std::size_t bytes, Bench& bench) {
   const auto start = Clock::now();
-  std::shared_ptr<const Sampler> sampler;
+  std::shared_ptr<const Bsdf> bsdf;
+  BsdfData kept;
   for (const int side : {4, 5, 6, 8, 12, 16}) {  // upwards: those that do not fit take longest to build
-    if (sampler && sampler->bytes() > bytes) break;
-    StackOptions options;
+    if (bsdf && bsdf->bytes() > bytes) break;
+    BsdfOptions options;
+    options.interpolation = Interpolation::displacement;
     options.meridians = options.parallels = side;
-    options.bytes = bytes;
-    const auto larger = std::make_shared<const Sampler>(table, build_stack(*table, options));
-    if (sampler && larger->bytes() > bytes) break;
-    sampler = larger;
+    options.budget = bytes;
+    BsdfData data{build_stack(*table, options), options.interpolation, Storage::float32, {}};
+    const auto larger = std::make_shared<const Bsdf>(data, table);
+    if (bsdf && larger->bytes() > bytes) break;
+    bsdf = larger, kept = std::move(data);
   }
-  bench.add<Sampler>("displacement_small", "outgoing", stack_params(sampler->stack()), seconds_since(start), sampler);
+  bench.add<Bsdf>("displacement_small", "outgoing", stack_params(kept), seconds_since(start), bsdf);
 }
 
-/// What Sampler does by default, and the smallest compact BSDF of ten times the variance. Everything that was
+/// What make_bsdf() does by default, and the smallest BSDF with colours of its own of ten times the variance. Everything that was
 /// measured on the way becomes a point.
 void add_compact(const std::shared_ptr<const BrdfTable>& table, Bench& bench, std::vector<FrontPoint>& points,
                  const Progress& progress) {
@@ -237,22 +229,24 @@ void add_compact(const std::shared_ptr<const BrdfTable>& table, Bench& bench, st
   };
   auto start = Clock::now();
   const CompactChoice fine = fit_compact(*table, {}, [&](double done) { progress(done / 2); });
-  const auto sampler = std::make_shared<const Sampler>(table, fine.best().diagrams, Interpolation::blend, Storage::packed16);
-  nlohmann::json params = stack_params(sampler->stack());
+  BsdfData without_colour = fine.best().data;
+  without_colour.colour = {};
+  const auto bsdf = std::make_shared<const Bsdf>(without_colour, table);
+  nlohmann::json params = stack_params(without_colour);
   params["default"] = true;
-  bench.add<Sampler>("blend", to_string(sampler->stack().chart()), params, seconds_since(start), sampler);
+  bench.add<Bsdf>("blend", to_string(bsdf->chart()), params, seconds_since(start), bsdf);
   add_points(fine, false);
 
   start = Clock::now();
-  CompactOptions options;
+  BsdfOptions options;
   options.max_variance = compact_variance;
   const CompactChoice small = fit_compact(*table, options, [&](double done) { progress(0.5 + done / 2); });
   const CompactFit& best = small.best();
-  const auto compact = std::make_shared<const AgainstTable>(AgainstTable{table, best.bsdf()});
-  params = stack_params(compact->bsdf);
+  const auto compact = std::make_shared<const AgainstTable>(AgainstTable{table, Bsdf(best.data)});
+  params = stack_params(best.data);
   params["eval_error"] = best.quality.eval_error;
   params["albedo_error"] = best.quality.albedo_error;
-  bench.add<CompactBsdf, AgainstTable>("compact", to_string(best.diagrams.chart), params, seconds_since(start), compact->bsdf, compact);
+  bench.add<Bsdf, AgainstTable>("compact", to_string(best.data.diagrams.chart), params, seconds_since(start), compact->bsdf, compact);
   add_points(small, true);
 }
 
@@ -260,14 +254,14 @@ MaterialReport measure_stack_file(const std::filesystem::path& path, const Progr
   const StackFile file = load_stack(path);
   MaterialReport material{file.name, path.string(), "stack", std::filesystem::file_size(path), {}};
   const auto start = std::chrono::steady_clock::now();
-  const auto bsdf = std::make_shared<const CompactBsdf>(load_compact(path));
+  const auto bsdf = std::make_shared<const Bsdf>(load_bsdf(path));
   const std::chrono::duration<double> build = std::chrono::steady_clock::now() - start;
-  nlohmann::json params = stack_params(*bsdf);
+  nlohmann::json params = stack_params(file.bsdf);
   params["self_contained"] = true;
   Bench bench;
-  bench.add<CompactBsdf>(to_string(file.interpolation), to_string(file.diagrams.chart), params, build.count(), bsdf);
+  bench.add<Bsdf>(to_string(file.bsdf.interpolation), to_string(file.bsdf.diagrams.chart), params, build.count(), bsdf);
   bench.run(material, progress);
-  material.stack.emplace(file.diagrams, file.interpolation);
+  material.stack.emplace(file.bsdf.diagrams, file.bsdf.interpolation);
   return material;
 }
 
@@ -291,8 +285,11 @@ MaterialReport measure_material(const std::filesystem::path& path, const ReportO
   if (std::holds_alternative<RglTable>(table->data()))
     bench.add<RglSampler>("rgl", "half", none, 0, std::make_shared<const RglSampler>(table));
   for (const Interpolation interpolation : {Interpolation::nearest, Interpolation::mixture, Interpolation::displacement}) {
-    const auto sampler = std::make_shared<const Sampler>(table, grid, interpolation);
-    bench.add<Sampler>(to_string(interpolation), "outgoing", stack_params(sampler->stack()), build.count(), sampler);
+    const BsdfData data{grid, interpolation, Storage::float32, {}};
+    if (interpolation == Interpolation::mixture)
+      bench.add<StackBsdf>("mixture", "outgoing", stack_params(data), build.count(), std::make_shared<const StackBsdf>(data, table));
+    else
+      bench.add<Bsdf>(to_string(interpolation), "outgoing", stack_params(data), build.count(), std::make_shared<const Bsdf>(data, table));
   }
   std::vector<FrontPoint> points;
   add_compact(table, bench, points, [&](double done) { progress(building * (1 + 2 * done) / 3); });

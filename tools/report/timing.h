@@ -8,7 +8,7 @@
 
 #include <gonio/tools/report/report_data.h>
 
-#include <gonio/brdf/batch/batch_sampler.h>
+#include <gonio/brdf/bsdf/bsdf.h>
 #include <gonio/brdf/proof/random.h>
 
 namespace gonio {
@@ -68,7 +68,7 @@ CallTimes time_sampler(const S& sampler, const TimedQueries& q) {
 }
 
 /// Times the same calls in batches of 4096: nanoseconds per element.
-inline CallTimes time_batch(const BatchSampler& batch, const TimedQueries& q) {
+inline CallTimes time_batch(const Bsdf& bsdf, const TimedQueries& q) {
   constexpr std::size_t size = 4096;
   std::vector<float> arrays[12];
   for (auto& a : arrays) a.resize(q.count);
@@ -90,10 +90,10 @@ inline CallTimes time_batch(const BatchSampler& batch, const TimedQueries& q) {
   };
   CallTimes ns{};
   ns.sample = timed([&](std::size_t k) {
-    batch.sample_n(size, at(0, k), arrays[6].data() + k, arrays[7].data() + k, at(8, k), arrays[11].data() + k, colour);
+    bsdf.sample_n(size, at(0, k), arrays[6].data() + k, arrays[7].data() + k, at(8, k), arrays[11].data() + k, colour);
   });
-  ns.pdf = timed([&](std::size_t k) { batch.pdf_n(size, at(0, k), at(3, k), arrays[11].data() + k); });
-  ns.eval = timed([&](std::size_t k) { batch.eval_n(size, at(0, k), at(3, k), colour); });
+  ns.pdf = timed([&](std::size_t k) { bsdf.pdf_n(size, at(0, k), at(3, k), arrays[11].data() + k); });
+  ns.eval = timed([&](std::size_t k) { bsdf.eval_n(size, at(0, k), at(3, k), colour); });
   return ns;
 }
 

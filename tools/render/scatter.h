@@ -6,25 +6,25 @@
 #include <optional>
 #include <utility>
 
-#include <gonio/brdf/bsdf/sampler.h>
+#include <gonio/brdf/value/bsdf_sample.h>
 
 namespace gonio {
 
-/// The material interface of this renderer: one-sided, in the local frame, with the meaning of the
-/// members as in Sampler.
-class Bsdf {
+/// What this renderer asks of a material, whatever samples it: one-sided, in the local frame, with the meaning of the
+/// members as in Bsdf.
+class Scatter {
  public:
-  virtual ~Bsdf() = default;
+  virtual ~Scatter() = default;
   virtual std::optional<BsdfSample> sample(const glm::vec3& wi, const glm::vec2& u) const noexcept = 0;
   virtual float pdf(const glm::vec3& wi, const glm::vec3& wo) const noexcept = 0;
   virtual glm::vec3 eval(const glm::vec3& wi, const glm::vec3& wo) const noexcept = 0;
 };
 
-/// Any of the library's samplers as a material.
+/// Any of the library's samplers as that.
 template <class S>
-class BsdfOf final : public Bsdf {
+class ScatterOf final : public Scatter {
  public:
-  explicit BsdfOf(S sampler) : sampler_(std::move(sampler)) {}
+  explicit ScatterOf(S sampler) : sampler_(std::move(sampler)) {}
   std::optional<BsdfSample> sample(const glm::vec3& wi, const glm::vec2& u) const noexcept override { return sampler_.sample(wi, u); }
   float pdf(const glm::vec3& wi, const glm::vec3& wo) const noexcept override { return sampler_.pdf(wi, wo); }
   glm::vec3 eval(const glm::vec3& wi, const glm::vec3& wo) const noexcept override { return sampler_.eval(wi, wo); }
@@ -34,8 +34,8 @@ class BsdfOf final : public Bsdf {
 };
 
 template <class S>
-std::shared_ptr<const Bsdf> make_bsdf(S sampler) {
-  return std::make_shared<const BsdfOf<S>>(std::move(sampler));
+std::shared_ptr<const Scatter> make_scatter(S sampler) {
+  return std::make_shared<const ScatterOf<S>>(std::move(sampler));
 }
 
 /// f_r = albedo / pi, drawn in proportion to the cosine.
