@@ -73,7 +73,7 @@ TEST(CompareMethods, TheErrorOfTheReferenceIsKnownAndSubtracted) {
   EXPECT_NEAR(c.runs[0].convergence.back().relmse, std::max(distance - c.reference_relmse, 0.0), 1e-9);
 }
 
-TEST(CompareMethods, NeedsATable) {
+TEST(CompareMethods, NeedsATableOrAStackFile) {
   Scene scene = plate();
   scene.materials[0].table = nullptr;
   CompareOptions options;

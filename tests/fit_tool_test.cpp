@@ -184,7 +184,7 @@ TEST_F(FitToolTest, RefusesWhatItCannotDo) {
   expect_error("fit a.mbsdf --model nosuch -o x.json", "unknown lobe 'nosuch'");
   expect_error("fit a.mbsdf --cutoff 0 -o x.json", "--cutoff: found 0");
   expect_error("fit a.mbsdf --channels many -o x.json",
-               "--channels: found 'many', expected shared");
+               "--channels: found 'many', expected one of shared, separate");
   expect_error("fit a.mbsdf --starts -1 -o x.json", "starts");
   expect_error("fit a.mbsdf a.mbsdf -o x.json", "IN: found 2, expected one, or --table");
   expect_error("fit a.mbsdf -o x.json --table x.md", "-o: found one, expected none");

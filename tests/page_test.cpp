@@ -290,6 +290,11 @@ TEST_F(PageTest, ShowsWhatMemoryBuysAndTheFitsThemselves) {
   EXPECT_EQ(text("#methods label:has(abbr)"), "blend (half) default");
   EXPECT_NE(text("#provenance").find("gonio report 'a b.bsdf' -o <out>"), std::string::npos);
   EXPECT_NE(text("#provenance").find("SHA-256 0123abcd"), std::string::npos);
+  // Whose bytes they are.
+  EXPECT_NE(text("#provenance").find("121 KiB on disk"), std::string::npos);
+  EXPECT_NE(text("#material-0 .provenance").find("file of 121 KiB on disk"), std::string::npos);
+  EXPECT_NE(text("#material-0 .methods thead").find("in memory"), std::string::npos);
+  EXPECT_NE(text("#overview-table thead").find("in memory"), std::string::npos);
   expect_clean();
 }
 

@@ -78,15 +78,15 @@ TEST_F(SceneToolTest, NamesWhatIsWrongInAManifest) {
   expect("{}", "the file: found none, expected a member 'format'");
   expect(R"({"format": "gonio model", "version": 1, "materials": []})", R"(format: found "gonio model", expected "gonio scene")");
   expect(R"({"format": "gonio scene", "version": 2, "materials": []})", "version: found 2, expected 1");
-  expect(R"({"format": "gonio scene", "version": 1, "material": []})", "the file: found 'material', expected no members but");
+  expect(R"({"format": "gonio scene", "version": 1, "material": []})", "the file: found an unknown member 'material', expected one of format, version, materials; did you mean materials?");
+  expect(R"({"materials": {}, "objects": []})", "found a scene of gonio render (docs/render.md), expected a manifest of gonio convert --scene (docs/scene.md)");
   expect(manifest("[]"), "materials: found array, expected an array of at least one");
   expect(manifest("[7]"), "materials[0]: found number, expected an object");
   expect(material(R"("name": "b", "file": "a.mbsdf")"), "materials[1]: found none, expected a member 'share'");
   expect(material(R"("name": "b", "file": "a.mbsdf", "share": "half")"), "materials[1].share: found \"half\"");
   expect(material(R"("name": "b", "file": "a.mbsdf", "share": -1)"), "materials[1].share: found -1, expected a finite number >= 0");
   expect(material(R"("name": "b", "file": "a.mbsdf", "share": null)"), "materials[1].share: found null");
-  expect(material(R"("name": "b", "file": "a.mbsdf", "share": 1, "shares": 1)"), "materials[1]: found 'shares'");
-  expect(material(R"("name": "b", "file": "b.mbsdf", "share": 1)"), "materials[1].file: found no file b.mbsdf");
+  expect(material(R"("name": "b", "file": "a.mbsdf", "share": 1, "shares": 1)"), "materials[1]: found an unknown member 'shares', expected one of name, file, share, incidence; did you mean share?");
   expect(material(R"("name": "", "file": "a.mbsdf", "share": 1)"), "materials[1].name: found \"\"");
   expect(material(R"("name": "one", "file": "a.mbsdf", "share": 1)"), "materials[1].name: found 'one' again");
   expect(material(R"("name": "../b", "file": "a.mbsdf", "share": 1)"), "materials[1].name: found '../b'");
@@ -110,6 +110,25 @@ TEST_F(SceneToolTest, RefusesWhatASceneDoesNotTake) {
   expect_error("--scene scene.json --budget 1MiB -o a.mbsdf", "a.mbsdf: found a file, expected a folder");
   test::write_file(path("a.mbsdf"), "no table");
   expect_error("--scene scene.json --budget 1MiB -o stacks", "a.mbsdf");
+}
+
+TEST_F(SceneToolTest, AMaterialThatFailsCostsTheOthersNothing) {
+  write_table("a.mbsdf", "lambert:albedo=0.5");
+  test::write_file(path("bad.mbsdf"), "no table");
+  write_scene({{{"name", "missing"}, {"file", "none.mbsdf"}, {"share", 1}},
+               {{"name", "a"}, {"file", "a.mbsdf"}, {"share", 2}},
+               {{"name", "bad"}, {"file", "bad.mbsdf"}, {"share", 1}}});
+  const Outcome run = execute("--scene scene.json --budget 60kB -o stacks");
+  EXPECT_EQ(run.code, 1);
+  EXPECT_NE(run.err.find("gonio convert: 2 of 3 inputs failed: none.mbsdf: no such file; bad.mbsdf: "), std::string::npos) << run.err;
+  EXPECT_NE(run.out.find("written: stacks/a.exr\nwritten: stacks/scene-budget.json\n"), std::string::npos) << run.out;
+  EXPECT_GT(load_compact(path("stacks/a.exr")).bytes(), 0u);
+  EXPECT_FALSE(std::filesystem::exists(path("stacks/bad.exr")));
+  const json result = summary();
+  ASSERT_EQ(result["materials"].size(), 1u);
+  EXPECT_EQ(result["materials"][0]["name"], "a");
+  EXPECT_EQ(result["materials"][0]["share"], 0.5);
+  EXPECT_EQ(result["bytes"], result["materials"][0]["bytes"]);
 }
 
 // A mirror on nearly all of the picture, a glossy and a matt material on the rest of it.

@@ -176,7 +176,7 @@ TEST_F(ToolTest, UsageErrors) {
   expect_error("info a.mbsdf b.mbsdf", {"b.mbsdf"});
   expect_error("info a.mbsdf --bogus", {"--bogus"});
   expect_error("info a.mbsdf --negative maybe",
-               {"--negative: found 'maybe', expected zero, fill or reject"});
+               {"--negative: found 'maybe', expected one of zero, fill, reject"});
   expect_error("validate", {"FILE"});
   expect_error("convert a.mbsdf", {"gonio convert: ", "OUT"});
   expect_error("convert a.mbsdf b.exr --grid 40", {"--grid: found '40'"});
@@ -191,6 +191,43 @@ TEST_F(ToolTest, UsageErrors) {
   expect_error("convert a.mbsdf b.exr --tolerance nan", {"tolerance"});
   expect_error("convert a.mbsdf b.mbsdf --grid 0x9", {"--grid"});
   expect_error("convert a.mbsdf b.mbsdf --grid 99999x9", {"grid: found 99999 thetas"});
+}
+
+TEST_F(ToolTest, WordsThatAreNotKnown) {
+  write("a.mbsdf", sample_mbsdf());
+  expect_error("convrt a.mbsdf b.exr", {"found 'convrt', expected one of info, validate, convert, ", "; did you mean convert?"});
+  expect_error("ligth info", {"; did you mean light?"});
+  expect_error("light valdate a.ies", {"found 'valdate', expected one of info, validate, convert, plot", "; did you mean validate?"});
+  expect_error("light", {"found no verb, expected one of info, validate, convert, plot"});
+  expect_error("--verson", {"found '--verson', expected one of --help, --version; did you mean --version?"});
+  expect_error("convert a.mbsdf b.exr --max-varience 1e-3", {"gonio convert: found '--max-varience', expected one of ", "; did you mean --max-variance?"});
+  expect_error("convert a.mbsdf b.exr --max-varience=1e-3", {"found '--max-varience'", "; did you mean --max-variance?"});
+  expect_error("info --jsn", {"found '--jsn', expected one of --help, --json, --negative, ", "; did you mean --json?"});
+  expect_error("light plot a.ies b.svg --plane 0", {"; did you mean --planes?"});
+  expect_error("convert a.mbsdf b.exr --chart outgoin", {"--chart: found 'outgoin', expected one of outgoing, half, auto; did you mean outgoing?"});
+  expect_error("convert a.mbsdf b.mbsfd", {"extension: found .mbsfd, expected one of .exr, .binary, .mbsdf, .bsdf; did you mean .mbsdf?"});
+  expect_error("info a.mbsdf --negative fil", {"expected one of zero, fill, reject; did you mean fill?"});
+  expect_error("render --material a.mbsdf --sampling cosin", {"--sampling: found 'cosin', expected one of default, cosine, ", "; did you mean cosine?"});
+  expect_error("compare --material a.mbsdf --methods default,lobe3 -o c", {"--methods: found 'lobe3', expected one of default, ", "; did you mean lobes3?"});
+  expect_error("fit a.mbsdf --model gxg+lambert", {"unknown lobe 'gxg'; expected one of lambert, ", "; did you mean ggx?"});
+  expect_error("synth ggx:alhpa=0.1 -o b.binary", {"'alhpa'; expected one of alpha, F0, F90, eta, k; did you mean alpha?"});
+  expect_error("light plot a.ies b.svg --normalise flx", {"--normalise: found 'flx', expected one of none, flux, maximum; did you mean flux?"});
+  // Nothing is guessed for a word that resembles none.
+  EXPECT_FALSE(contains(expect_error("frobnicate", {"expected one of"}).errors[0], "did you mean"));
+}
+
+TEST_F(ToolTest, HelpIsAVerbToo) {
+  EXPECT_EQ(execute("help").out, execute("--help").out);
+  EXPECT_EQ(execute("help").code, 0);
+  for (const std::string verb : {"convert", "render", "light", "light plot", "help"}) {
+    const Outcome run = execute("help " + verb);
+    EXPECT_EQ(run.code, 0) << verb;
+    EXPECT_EQ(run.out, execute(verb + " --help").out) << verb;
+    EXPECT_TRUE(contains(run.out, "Usage: gonio " + verb + " ")) << run.out;
+  }
+  expect_error("help convrt", {"gonio help: found 'convrt', expected one of info, ", "; did you mean convert?"});
+  expect_error("help light plto", {"found 'plto', expected one of info, ", "; did you mean plot?"});
+  expect_error("help convert fast", {"found 'fast', expected no verb of gonio convert"});
 }
 
 TEST_F(ToolTest, OptionsWithoutEffectAreRefused) {
@@ -221,20 +258,39 @@ TEST_F(ToolTest, OutputsThatCannotBeWritten) {
   expect_error("convert a.mbsdf b.png",
                {"b.png: extension: found .png, expected one of .exr, .binary, .mbsdf, .bsdf"});
   expect_error("convert a.mbsdf b", {"b: extension: found none"});
-  expect_error("convert a.mbsdf missing/b.exr",
-               {"missing/b.exr: folder: found none, expected missing"});
-  expect_error("convert a.mbsdf missing/b.binary", {"missing/b.binary: folder"});
-  expect_error("convert a.mbsdf a.mbsdf/b.exr", {"a.mbsdf/b.exr: folder"});
+  expect_error("convert a.mbsdf missing/b.exr", {"convert: missing: no such folder"});
+  expect_error("convert a.mbsdf missing/b.binary", {"convert: missing: no such folder"});
+  expect_error("convert a.mbsdf a.mbsdf/b.exr", {"convert: a.mbsdf: no such folder"});
+  expect_error("convert a.mbsdf b.exr --front missing/f.json", {"convert: missing: no such folder"});
   expect_ok("convert a.mbsdf folder.exr --incident 3 --grid 5x6");  // into the folder
   EXPECT_TRUE(fs::is_regular_file(path("folder.exr/a.exr")));
   for (const std::string name : {"b.exr", "b.binary", "b.mbsdf"}) {
     expect_error("convert a.mbsdf " + read_only + name, {read_only + name});
   }
-  expect_error("synth default -o missing/b.binary", {"missing/b.binary: folder"});
+  expect_error("synth default -o missing/b.binary", {"synth: missing: no such folder"});
   expect_error("synth default -o " + read_only + "b.mbsdf", {read_only + "b.mbsdf"});
   expect_error("synth default -o b.exr",
                {"b.exr: extension: found .exr, expected one of .binary, .mbsdf"});
   fs::permissions(path("read_only"), fs::perms::owner_all);
+}
+
+TEST_F(ToolTest, InputsThatDoNotExist) {
+  write("a.mbsdf", sample_mbsdf());
+  for (const std::string arguments :
+       {"info none", "convert none b.exr", "convert none b.bsdf", "convert none b.binary", "report none -o r", "report --merge none -o r",
+        "report a.mbsdf --stability none -o r", "fit none", "fit none --table t.md", "ndf none -o n", "render --material none", "render none",
+        "compare none -o c", "compare --material none -o c", "light info none", "light convert none b.ldt", "light sample none",
+        "convert --scene none --budget 1MiB -o s"})
+    expect_error(arguments, {": none: no such file"});
+  expect_error("synth none.json -o b.binary", {": none.json: no such file"});
+  EXPECT_EQ(expect_error("validate none", {"unusable: none"}).out, "none: error: no such file\n");
+  EXPECT_EQ(expect_error("light validate none", {}).out, "none: rejected\n  none: no such file\n");
+  expect_error("info .", {".: found a folder, expected a file"});
+  expect_error("info a.mbsdf/b", {"a.mbsdf/b: no such file"});
+  write("scene.json", R"({"environment": {"file": "sky.exr"}, "materials": {"m": {"albedo": 1}}, "objects": [{"file": "m.ply", "material": "m"}]})");
+  expect_error("render scene.json", {": sky.exr: no such file"});
+  write("scene.json", R"({"materials": {"m": {"albedo": 1}}, "objects": [{"file": "m.ply", "material": "m"}]})");
+  expect_error("render scene.json", {": m.ply: no such file"});
 }
 
 TEST_F(ToolTest, AnInputIsNeverReplaced) {
@@ -337,7 +393,7 @@ TEST_F(ToolTest, InfoOfTables) {
   EXPECT_TRUE(contains(mbsdf, "format      MBSDF\n")) << mbsdf;
   EXPECT_TRUE(contains(mbsdf, "6 x 6 x 8 cells")) << mbsdf;
   EXPECT_TRUE(contains(mbsdf, "theta_i     7.5 to 82.5")) << mbsdf;
-  EXPECT_TRUE(contains(mbsdf, std::to_string(sample_mbsdf().size()) + " bytes")) << mbsdf;
+  EXPECT_TRUE(contains(mbsdf, "file        " + std::to_string(sample_mbsdf().size()) + " bytes (3.4 KiB) on disk\n")) << mbsdf;
   expect_near(printed_albedo(mbsdf, 30), glm::vec3(0.5f), 1e-4f);
 
   write("a.bsdf", sample_rgl());
@@ -901,7 +957,30 @@ TEST_F(ToolTest, ConvertsToRgl) {
   expect_error("convert a.bsdf d.bsdf --negative fill", {"--negative"});
   expect_error("convert a.mbsdf d.bsdf --grid 9x9", {"--grid"});
   expect_error("convert a.mbsdf d.binary --rgb", {"--rgb", "only .bsdf"});
-  expect_error("convert a.mbsdf missing/d.bsdf", {"missing/d.bsdf: folder"});
+  expect_error("convert a.mbsdf missing/d.bsdf", {"missing: no such folder"});
+}
+
+// Their pictures lie in one folder, under the names of the materials.
+TEST_F(ToolTest, ReportOfMaterialsOfOneName) {
+  fs::create_directories(path("a"));
+  fs::create_directories(path("b"));
+  write("x.mbsdf", sample_mbsdf());
+  expect_ok("convert x.mbsdf a/x.exr --incident 3 --grid 5x6");
+  StackFile stack = load_stack(path("a/x.exr"));
+  stack.name = "../two words";  // which is no name of a file
+  save_stack(path("a/x.exr"), stack);
+  fs::copy_file(path("a/x.exr"), path("b/x.exr"));
+  const Outcome run = execute("report a/x.exr b/x.exr -o r");
+  EXPECT_EQ(run.code, 0);
+  const nlohmann::json json = nlohmann::json::parse(read_bytes(path("r/report.json")));
+  EXPECT_EQ(json["materials"][0]["name"], "../two words");
+  EXPECT_EQ(json["materials"][1]["name"], "../two words-2");
+  const std::string text = read_bytes(path("r/report.md"));
+  for (const std::string name : {".._two_words", ".._two_words-2"}) {
+    EXPECT_TRUE(contains(text, "![grid](" + name + ".svg)")) << text;
+    EXPECT_TRUE(fs::exists(path("r/" + name + ".svg"))) << name;
+    EXPECT_TRUE(fs::exists(path("r/" + name + "-weights.svg"))) << name;
+  }
 }
 
 TEST_F(ToolTest, MergesReports) {
@@ -925,11 +1004,18 @@ TEST_F(ToolTest, MergesReports) {
   EXPECT_TRUE(contains(text, "| [chrome](../x/report.html) | merl | displacement | outgoing | 50 | 0.01 | 2 |")) << text;
   EXPECT_TRUE(contains(read_bytes(path("all/report.html")), "slow"));
   write("text.json", "no report");
-  expect_error("report --merge x/report.json text.json -o two", {"text.json: is not JSON"});
+  expect_error("report --merge text.json none.json -o two", {"2 of 2 inputs failed: text.json: is not JSON", "; none.json: no such file"});
+  const Outcome partly = execute("report --merge text.json b.json -o two");
+  EXPECT_EQ(partly.code, 1);
+  ASSERT_EQ(partly.errors.size(), 1u);
+  EXPECT_TRUE(contains(partly.errors[0], "gonio report: 1 of 2 inputs failed: text.json: is not JSON")) << partly.errors[0];
+  EXPECT_TRUE(contains(partly.out, "written: two/report.html")) << partly.out;
+  EXPECT_TRUE(contains(read_bytes(path("two/report.md")), "1 materials")) << read_bytes(path("two/report.md"));
+  EXPECT_TRUE(contains(read_bytes(path("two/report.md")), "| [gold](../report.html) |")) << read_bytes(path("two/report.md"));
   write("list.json", "[1]");
-  expect_error("report --merge list.json -o two", {"list.json: materials"});
+  expect_error("report --merge list.json -o three", {"list.json: materials"});
   write("old.json", "{\"gonio_version\": \"0.0.1\", \"materials\": [], \"lights\": []}");
-  expect_error("report --merge old.json -o two", {"old.json: gonio_version: found \"0.0.1\""});
+  expect_error("report --merge old.json -o three", {"old.json: gonio_version: found \"0.0.1\""});
 }
 
 }  // namespace

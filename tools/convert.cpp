@@ -2,6 +2,7 @@
 #include <gonio/brdf/formats/sniff.h>
 #include <gonio/brdf/resample/table_resample.h>
 #include <gonio/fitting/model/synth.h>
+#include <gonio/mapping/base/atomic_file.h>
 #include <gonio/mapping/base/error.h>
 #include <gonio/tools/check_not_input.h>
 #include <gonio/tools/check_writable.h>
@@ -201,7 +202,7 @@ void convert(const CLI::App& verb, Options& options) {
     convert_each(verb, options, inputs, out);
     return;
   }
-  if (inputs.size() > 1 || std::filesystem::path(out).filename().empty()) throw Error(out + ": no such folder");
+  if (inputs.size() > 1 || std::filesystem::path(out).filename().empty()) check_folder(out);
   refuse(verb, {"--format"}, "the extension of OUT is the format");
   options.in = inputs.front(), options.out = out;
   convert_file(verb, options);
@@ -221,7 +222,7 @@ void add_convert(CLI::App& app) {
                    "Or a folder that exists: each input becomes a file of its name there")
       ->option_text("... OUT");
   verb->add_option("--format", options->format, "Of the files in a folder")
-      ->check(CLI::IsMember({"exr", "binary", "mbsdf", "bsdf"}))
+      ->check(known_word({"exr", "binary", "mbsdf", "bsdf"}))
       ->type_name("exr|binary|mbsdf|bsdf")
       ->capture_default_str();
   verb->add_option("--grid", options->grid,
@@ -244,7 +245,7 @@ void add_convert(CLI::App& app) {
                  "spectral variants need them");
   add_cell_policies(*verb, options->policies);
   verb->footer(
-      "IN OUT, or IN ... FOLDER: then what fails is named at the end, and the others are written.\n"
+      "IN OUT, or IN ... FOLDER, or --scene: of several materials, what fails is named at the end, and the others are written.\n"
       "MERL to MERL, RGL to RGL, and MBSDF to MBSDF without --grid, keep the values as they are stored.\n"
       "Anything else is sampled at the cell centres of OUT. A fit.json is a table of MERL's cells\n"
       "for a stack, and the model itself at the cell centres of a table.\n\n"

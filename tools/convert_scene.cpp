@@ -105,8 +105,8 @@ void print(const std::vector<SceneMaterial>& scene, const std::vector<Curve>& cu
   std::printf("\nbytes are those in memory\n");
 }
 
-/// All inputs load, and none would be replaced: one that fails costs no other its time.
-void check_inputs(const std::filesystem::path& path, const std::vector<SceneMaterial>& scene, const std::filesystem::path& out) {
+/// None of the inputs would be replaced.
+void check_outputs(const std::filesystem::path& path, const std::vector<SceneMaterial>& scene, const std::filesystem::path& out) {
   std::vector<std::filesystem::path> inputs{path};
   std::vector<std::string> outputs{"scene-budget.json"};
   for (const SceneMaterial& material : scene) {
@@ -114,31 +114,44 @@ void check_inputs(const std::filesystem::path& path, const std::vector<SceneMate
     outputs.push_back(material.name + ".exr");
   }
   check_not_input(out, outputs, inputs);
-  Failures failures;
+}
+
+/// Those that load: building stacks takes long, and is not begun before all are known.
+std::vector<SceneMaterial> usable_materials(const std::vector<SceneMaterial>& scene, Failures& failures) {
+  std::vector<SceneMaterial> usable;
   for (const SceneMaterial& material : scene) {
     const ProgressLine progress("reading " + material.file.string());
-    failures.survives([&] { load_input(material.file); });
+    if (failures.survives([&] { load_input(material.file); })) usable.push_back(material);
   }
-  failures.throw_any(scene.size());
+  return usable;
 }
 
 }  // namespace
 
 void convert_scene(const std::filesystem::path& path, std::size_t bytes, const std::filesystem::path& out) {
-  const std::vector<SceneMaterial> scene = load_scene(path);
+  const std::vector<SceneMaterial> all = load_scene(path);
   if (std::filesystem::exists(out) && !std::filesystem::is_directory(out))
     throw Error(out.string() + ": found a file, expected a folder");
-  check_inputs(path, scene, out);
+  check_outputs(path, all, out);
+  Failures failures;
+  const std::vector<SceneMaterial> usable = usable_materials(all, failures);
+  std::vector<SceneMaterial> scene;  // what becomes stacks
   std::vector<std::vector<CompactFit>> fits;
   std::vector<Curve> curves;
   std::vector<double> shares;
-  for (const SceneMaterial& material : scene) {
-    fits.push_back(fits_of(material, bytes, "building the stacks of " + material.name + " (" + std::to_string(fits.size() + 1) +
-                                                " of " + std::to_string(scene.size()) + ")"));
+  for (std::size_t k = 0; k < usable.size(); ++k) {
+    const SceneMaterial& material = usable[k];
+    const bool built = failures.survives([&] {
+      fits.push_back(fits_of(material, bytes, "building the stacks of " + material.name + " (" + std::to_string(k + 1) + " of " +
+                                                  std::to_string(usable.size()) + ")"));
+    });
+    if (!built) continue;
+    scene.push_back(material);
     curves.emplace_back();
     for (const CompactFit& fit : fits.back()) curves.back().push_back({fit.bytes, fit.quality.mean_relvar});
     shares.push_back(material.share);
   }
+  if (scene.empty()) failures.throw_any(all.size());
   const Split split(split_budget(curves, shares, bytes), curves, shares);
   const Split even(split_evenly(curves, bytes), curves, shares);
 
@@ -169,6 +182,7 @@ void convert_scene(const std::filesystem::path& path, std::size_t bytes, const s
   print(scene, curves, split, even);
   for (const SceneMaterial& material : scene) print_written(out / (material.name + ".exr"));
   print_written(out / "scene-budget.json");
+  failures.throw_any(all.size());
 }
 
 }  // namespace gonio

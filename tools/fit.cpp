@@ -1,6 +1,7 @@
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/fitting/fit/fit_json.h>
 #include <gonio/mapping/base/atomic_file.h>
+#include <gonio/mapping/base/did_you_mean.h>
 #include <gonio/mapping/base/error.h>
 #include <gonio/tools/check_not_input.h>
 #include <gonio/tools/check_writable.h>
@@ -218,9 +219,11 @@ template <class T>
 CLI::Option* add_choice(CLI::App& verb, const std::string& name,
                         const std::vector<std::pair<std::string, T>>& choices, T& value,
                         const std::string& help) {
-  std::string words, initial;
+  std::string type, initial;
+  std::vector<std::string> words;
   for (const auto& [word, meaning] : choices) {
-    words += (words.empty() ? "" : "|") + word;
+    type += (type.empty() ? "" : "|") + word;
+    words.push_back(word);
     if (meaning == value) initial = word;
   }
   return verb
@@ -232,10 +235,10 @@ CLI::Option* add_choice(CLI::App& verb, const std::string& name,
               value = meaning;
               return;
             }
-            throw CLI::ValidationError(name, "found '" + text + "', expected " + words);
+            throw CLI::ValidationError(name, "found '" + text + "', expected " + one_of(words, text));
           },
           help)
-      ->type_name(words)
+      ->type_name(type)
       ->default_str(initial);
 }
 

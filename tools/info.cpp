@@ -74,7 +74,7 @@ std::string bytes_text(std::uintmax_t bytes) {
 }
 
 void file_bytes(Facts& facts, std::uintmax_t bytes) {
-  line(facts, "file", bytes_text(bytes));
+  line(facts, "file", bytes_text(bytes) + " on disk");
   facts.json["file_bytes"] = bytes;
 }
 

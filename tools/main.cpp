@@ -1,6 +1,8 @@
+#include <gonio/mapping/base/did_you_mean.h>
 #include <gonio/mapping/base/error.h>
 #include <gonio/tools/convert.h>
 #include <gonio/tools/fit.h>
+#include <gonio/tools/help.h>
 #include <gonio/tools/info.h>
 #include <gonio/tools/light/light.h>
 #include <gonio/tools/ndf.h>
@@ -18,6 +20,7 @@
 #include <iostream>
 #include <new>
 #include <string>
+#include <vector>
 
 namespace {
 
@@ -31,15 +34,27 @@ int fail(const CLI::App& app, std::string message) {
   return 1;
 }
 
+/// The first argument that looks like an option and is none; empty if there is no such.
+std::string unknown_option(const CLI::App& verb) {
+  for (const std::string& argument : verb.remaining())
+    if (argument.size() > 1 && argument.front() == '-') return argument.substr(0, argument.find('='));
+  return {};
+}
+
 std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
-  if (!app.get_subcommands().empty()) return std::string(error.what()) + "; see --help";
-  std::string verbs;
-  for (const CLI::App* verb : app.get_subcommands({})) {
-    verbs += (verbs.empty() ? "" : ", ") + verb->get_name();
+  const CLI::App* verb = &app;  // the first that left a word over, or the last
+  while (!verb->get_subcommands().empty() && verb->remaining().empty()) verb = verb->get_subcommands().front();
+  std::string found = unknown_option(*verb);
+  std::vector<std::string> known;
+  if (!found.empty()) {
+    for (const CLI::Option* option : verb->get_options())
+      if (option->nonpositional()) known.push_back(option->get_name());
+  } else if (known = gonio::verb_names(*verb); !known.empty()) {
+    if (!verb->remaining().empty()) found = verb->remaining().front();
+  } else {
+    return std::string(error.what()) + "; see --help";
   }
-  const bool unknown = !app.remaining().empty();
-  return (unknown ? "found '" + app.remaining().front() + "'" : std::string("found no verb")) +
-         ", expected one of " + verbs + "; see --help";
+  return (found.empty() ? "found no verb" : "found '" + found + "'") + ", expected " + gonio::one_of(known, found) + "; see --help";
 }
 
 /// What could not be written is an error even where no one looks at each write, as in --help.
@@ -79,6 +94,7 @@ int main(int argc, char** argv) {
   gonio::add_ndf(app);
   gonio::add_render(app);
   gonio::add_compare(app);
+  gonio::add_help(app);
   try {
     run(app, argc, argv);
     return 0;

@@ -1,3 +1,5 @@
+#include <gonio/mapping/base/atomic_file.h>
+#include <gonio/mapping/base/did_you_mean.h>
 #include <gonio/mapping/base/error.h>
 #include <gonio/tools/options.h>
 
@@ -34,7 +36,7 @@ void add_cell_policies(CLI::App& verb, CellPolicies& policies) {
         policy = known;
         return;
       }
-      throw CLI::ValidationError(name, "found '" + text + "', expected zero, fill or reject");
+      throw CLI::ValidationError(name, "found '" + text + "', expected " + one_of({"zero", "fill", "reject"}, text));
     };
     verb.add_option_function<std::string>(name, assign, cells)
         ->type_name("zero|fill|reject")
@@ -69,7 +71,7 @@ void add_stack_request(CLI::App& verb, StackRequest& request) {
             }
           },
           "What diagrams tabulate: outgoing directions, half vectors, or what measures better")
-      ->check(CLI::IsMember({"outgoing", "half", "auto"}))
+      ->check(known_word({"outgoing", "half", "auto"}))
       ->type_name("outgoing|half|auto")
       ->default_str("auto")
       ->group(size);
@@ -83,7 +85,7 @@ void add_stack_request(CLI::App& verb, StackRequest& request) {
             request.interpolation = text == "blend" ? Interpolation::blend : Interpolation::displacement;
           },
           "Sizes by hand, 32-bit densities, and this between incident angles [displacement]")
-      ->check(CLI::IsMember({"displacement", "blend"}))
+      ->check(known_word({"displacement", "blend"}))
       ->type_name("displacement|blend")
       ->group(by_hand);
   add_stack_options(verb, request.by_hand);
@@ -102,6 +104,14 @@ void add_stack_options(CLI::App& verb, StackOptions& stack) {
   verb.add_option("--tolerance", stack.tolerance, "Relative variance that is good enough")
       ->capture_default_str()
       ->group(by_hand);
+}
+
+CLI::Validator known_word(const std::vector<std::string>& known) {
+  const auto check = [known](const std::string& text) {
+    const bool is_known = std::find(known.begin(), known.end(), text) != known.end();
+    return is_known ? std::string() : "found '" + text + "', expected " + one_of(known, text);
+  };
+  return CLI::Validator(check, "");
 }
 
 std::pair<int, int> parse_grid(const std::string& option, const std::string& text) {
@@ -136,16 +146,10 @@ std::string checked_extension(const std::filesystem::path& output,
   std::string extension = output.extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   if (std::find(extensions.begin(), extensions.end(), extension) == extensions.end()) {
-    std::string expected;
-    for (const std::string& known : extensions) expected += (expected.empty() ? "" : ", ") + known;
-    throw Error(output.string() + ": extension: found " + (extension.empty() ? "none" : extension) +
-                ", expected one of " + expected);
+    throw Error(output.string() + ": extension: found " + (extension.empty() ? "none" : extension) + ", expected " +
+                one_of(extensions, extension));
   }
-  const std::filesystem::path folder = output.parent_path();
-  std::error_code code;
-  if (!folder.empty() && !std::filesystem::is_directory(folder, code)) {
-    throw Error(output.string() + ": folder: found none, expected " + folder.string());
-  }
+  if (output.has_parent_path()) check_folder(output.parent_path());
   return extension;
 }
 

@@ -3,6 +3,7 @@
 #include <gonio/brdf/build/build_stack.h>
 
 #include <CLI/App.hpp>
+#include <CLI/Validators.hpp>
 #include <cstddef>
 #include <filesystem>
 #include <initializer_list>
@@ -42,6 +43,9 @@ inline constexpr std::initializer_list<const char*> stack_options = {
 /// The options --incident, --bytes and --tolerance of a verb that builds stacks.
 /// `stack` must outlive the parsing.
 void add_stack_options(CLI::App& verb, StackOptions& stack);
+
+/// The check of an option whose value is one of these words.
+CLI::Validator known_word(const std::vector<std::string>& known);
 
 /// Two positive numbers, as in "40x30". @throws CLI::ValidationError naming `option`
 std::pair<int, int> parse_grid(const std::string& option, const std::string& text);

@@ -1,8 +1,10 @@
 #include <gonio/mapping/base/bytes.h>
 #include <gonio/fitting/model/parse_json.h>
+#include <gonio/mapping/base/did_you_mean.h>
 #include <gonio/mapping/base/error.h>
 #include <gonio/tools/scene.h>
 
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 #include <set>
@@ -24,15 +26,9 @@ class Reader {
   /// An object with no other members than these.
   void check_members(const json& value, const std::string& field, std::initializer_list<const char*> known) const {
     if (!value.is_object()) fail(field, value.type_name(), "an object");
-    for (const auto& [key, ignored] : value.items()) {
-      bool found = false;
-      std::string all;
-      for (const char* name : known) {
-        found = found || key == name;
-        all += (all.empty() ? "" : ", ") + std::string(name);
-      }
-      if (!found) fail(field, "'" + key + "'", "no members but " + all);
-    }
+    for (const auto& [key, ignored] : value.items())
+      if (std::find(known.begin(), known.end(), key) == known.end())
+        fail(field, "an unknown member '" + key + "'", one_of({known.begin(), known.end()}, key));
   }
 
   const json& member(const json& object, const std::string& field, const char* name) const {
@@ -85,6 +81,8 @@ std::vector<double> read_incidence(const Reader& reader, const json& material, c
 std::vector<SceneMaterial> load_scene(const std::filesystem::path& path) {
   const Reader reader(path.string());
   const json root = parse_json(read_bytes(path), path.string());
+  if (root.is_object() && root.contains("objects") && !root.contains("format"))
+    throw Error(path.string() + ": found a scene of gonio render (docs/render.md), expected a manifest of gonio convert --scene (docs/scene.md)");
   reader.check_members(root, "the file", {"format", "version", "materials"});
   if (reader.text(root, "the file", "format") != "gonio scene")
     reader.fail("format", shown(root["format"]), "\"gonio scene\"");
@@ -106,9 +104,6 @@ std::vector<SceneMaterial> load_scene(const std::filesystem::path& path) {
     if (!names.insert(material.name).second)
       reader.fail(field + ".name", "'" + material.name + "' again", "every name once");
     material.file = path.parent_path() / reader.text(entry, field, "file");
-    // Now: hours of work may come before the last of the files is needed.
-    if (std::error_code code; !std::filesystem::is_regular_file(material.file, code))
-      reader.fail(field + ".file", "no file " + material.file.string(), "one");
     material.share = reader.non_negative(reader.member(entry, field, "share"), field + ".share");
     material.incidence = read_incidence(reader, entry, field);
     sum += material.share;

@@ -1,4 +1,5 @@
 #include <gonio/fitting/model/model.h>
+#include <gonio/mapping/base/did_you_mean.h>
 #include <gonio/mapping/base/error.h>
 
 #include <algorithm>
@@ -51,12 +52,12 @@ std::vector<std::string_view> split_lobes(std::string_view text) {
 }
 
 LobeKind kind_of(std::string_view name) {
-  std::string known;
+  std::vector<std::string> known;
   for (LobeKind kind : lobe_kinds()) {
     if (lower(name) == lobe_info(kind).id) return kind;
-    known += std::string(known.empty() ? "" : ", ") + lobe_info(kind).id;
+    known.push_back(lobe_info(kind).id);
   }
-  throw Error("model description: unknown lobe " + in_quotes(name) + "; expected one of " + known);
+  throw Error("model description: unknown lobe " + in_quotes(name) + "; expected " + one_of(known, std::string(name)));
 }
 
 double number(std::string_view text, std::string_view parameter) {
@@ -98,6 +99,21 @@ std::optional<Slot> find_parameter(Lobe& lobe, const std::string& name) {
     }
   }
   return std::nullopt;
+}
+
+/// The names of all parameters that the lobes of a model may have, each once.
+std::vector<std::string> parameter_names(const LobeModel& model) {
+  std::vector<std::string> names;
+  const auto add = [&](const std::vector<Parameter>& parameters) {
+    for (const Parameter& p : parameters)
+      if (std::find(names.begin(), names.end(), p.name) == names.end()) names.push_back(p.name);
+  };
+  for (const Lobe& lobe : model.lobes) {
+    add(lobe_info(lobe.kind).shape);
+    add(color_parameters(lobe.kind, Fresnel::schlick));
+    add(color_parameters(lobe.kind, Fresnel::conductor));
+  }
+  return names;
 }
 
 void assign(Lobe& lobe, const std::string& name, std::string_view text) {
@@ -163,7 +179,7 @@ LobeModel parse_model(std::string_view text) {
     }
     if (!target) {
       throw Error("model description: no lobe of " + in_quotes(text) + " has a parameter " +
-                  in_quotes(name));
+                  in_quotes(name) + "; expected " + one_of(parameter_names(model), name));
     }
     if (owners > 1) {
       throw Error("model description: " + std::to_string(owners) + " lobes of " + in_quotes(text) +

@@ -1,8 +1,10 @@
 #include <gonio/mapping/base/bytes.h>
 #include <gonio/fitting/model/model_json.h>
 #include <gonio/fitting/model/parse_json.h>
+#include <gonio/mapping/base/did_you_mean.h>
 #include <gonio/mapping/base/error.h>
 
+#include <algorithm>
 #include <sstream>
 
 namespace gonio {
@@ -138,13 +140,12 @@ LobeModel model_from_json(std::string_view text, const std::string& where) {
     const std::string path = "lobes[" + std::to_string(l) + "]";
     const std::string id = reader.text(lobes[l], path, "lobe");
     Lobe lobe;
-    bool known = false;
+    std::vector<std::string> known;
     for (LobeKind kind : lobe_kinds()) {
-      if (id != lobe_info(kind).id) continue;
-      lobe.kind = kind;
-      known = true;
+      if (id == lobe_info(kind).id) lobe.kind = kind;
+      known.push_back(lobe_info(kind).id);
     }
-    if (!known) reader.fail(path + ".lobe is '" + id + "', which is no lobe");
+    if (std::find(known.begin(), known.end(), id) == known.end()) reader.fail(path + ".lobe is '" + id + "'; expected " + one_of(known, id));
     if (lobe.specular()) {
       const std::string fresnel = reader.text(lobes[l], path, "fresnel");
       if (fresnel != "schlick" && fresnel != "conductor") {

@@ -10,6 +10,11 @@
 namespace gonio {
 namespace fs = std::filesystem;
 
+void check_folder(const fs::path& folder) {
+  std::error_code code;
+  if (!fs::is_directory(folder, code)) throw Error(folder.string() + ": no such folder");
+}
+
 void write_atomically(const fs::path& target,
                       const std::function<void(const fs::path& temporary)>& write) {
   std::error_code code;
@@ -23,9 +28,7 @@ void write_atomically(const fs::path& target,
   // A rename over a link would replace the link.
   const fs::path file = exists ? fs::canonical(target) : target;
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-  if (!fs::is_directory(folder, code)) {
-    throw Error(target.string() + ": folder: found none, expected " + folder.string());
-  }
+  check_folder(folder);
   // Not the name of the file with something added: that may be longer than a name can be.
   const fs::path temporary = folder / ("gonio.part-" + std::to_string(std::random_device{}()));
   try {

@@ -7,6 +7,9 @@
 
 namespace gonio {
 
+/// @throws Error if there is no such folder.
+void check_folder(const std::filesystem::path& folder);
+
 /// Replaces `target` as a whole or leaves it as it was: calls `write` with the path of a new
 /// temporary file beside it, and renames that to `target` when `write` returns. If anything throws,
 /// the temporary file is removed and the exception passed on. A symbolic link is followed.

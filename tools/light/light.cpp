@@ -1,5 +1,6 @@
 #include <gonio/tools/light/command.h>
 #include <gonio/tools/light/light.h>
+#include <gonio/tools/options.h>
 
 #include <CLI/CLI.hpp>
 #include <memory>
@@ -28,8 +29,8 @@ void add_reading(CLI::App& verb, LightCommand& o) {
 void add_normalisation(CLI::App& verb, LightCommand& o) {
   verb.add_option("--normalise", o.normalise,
                   "scale to a flux or to a largest intensity; none keeps cd as measured")
-      ->check(CLI::IsMember({"none", "flux", "maximum"}))
-      ->type_name("MODE")
+      ->check(known_word({"none", "flux", "maximum"}))
+      ->type_name("none|flux|maximum")
       ->capture_default_str();
   verb.add_option("--target", o.target, "lm or cd to scale to")
       ->check(CLI::PositiveNumber)
@@ -40,7 +41,7 @@ void add_filter(CLI::App& verb, LightCommand& o) {
   const std::vector<std::string> names = reconstruction_names();
   verb.add_option("--filter", o.filter,
                   "reconstruction between the measured angles: " + CLI::detail::join(names, ", "))
-      ->check(CLI::IsMember(names))
+      ->check(known_word(names))
       ->type_name("FILTER")
       ->capture_default_str();
 }
@@ -81,7 +82,7 @@ void add_light(CLI::App& app) {
   verb->add_option(
           "--layout", o->layout,
           ".exr: diagram (lossless, read by gonio), octahedral (equal-area) or latlong images")
-      ->check(CLI::IsMember({"diagram", "octahedral", "latlong"}))
+      ->check(known_word({"diagram", "octahedral", "latlong"}))
       ->type_name("LAYOUT")
       ->capture_default_str();
   verb->add_option("--resolution", o->resolution, "height of images in pixels")

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include <gonio/mapping/base/did_you_mean.h>
 #include <gonio/mapping/base/error.h>
 #include <gonio/tools/progress.h>
 #include <gonio/tools/check_not_input.h>
@@ -34,19 +35,19 @@ void make_folder(const std::filesystem::path& folder) {
   check_writable(folder / "compare.html");
 }
 
-bool available(const Scene& scene, SamplingMethod method) {
-  return std::all_of(scene.materials.begin(), scene.materials.end(), [&](const Material& m) { return !m.table || MethodBuilder(m.table, m.model).available(method); });
-}
-
 std::vector<SamplingMethod> parse_methods(const std::vector<std::string>& names, const Scene& scene) {
-  std::vector<SamplingMethod> methods;
-  if (names.empty())
-    for (const SamplingMethod m : sampling_methods)
-      if (available(scene, m)) methods.push_back(m);
+  std::vector<SamplingMethod> available, methods;
+  std::vector<std::string> available_names;
+  for (const SamplingMethod m : sampling_methods) {
+    if (!method_available(scene, m)) continue;
+    available.push_back(m);
+    available_names.push_back(to_string(m));
+  }
+  if (names.empty()) return available;
   for (const std::string& name : names) {
     const auto method = parse_sampling_method(name);
-    if (!method) throw Error("--methods: found '" + name + "', expected some of " + sampling_method_names());
-    if (!available(scene, *method)) throw Error("--methods: found " + name + ", expected methods that every table of the scene has");
+    if (!method) throw Error("--methods: found '" + name + "', expected " + one_of(sampling_method_names(), name));
+    if (!method_available(scene, *method)) throw Error("--methods: found " + name + ", which not every material of the scene has, expected " + one_of(available_names, name));
     if (std::find(methods.begin(), methods.end(), *method) == methods.end()) methods.push_back(*method);
   }
   return methods;
@@ -85,7 +86,7 @@ void add_compare(CLI::App& app) {
   options->choice.size = "128x128";
   verb->get_option("--size")->capture_default_str();
   verb->add_option("-o,--output", options->out, "Folder for compare.html, compare.md, compare.json and pictures")->required();
-  verb->add_option("--methods", options->methods, "Sampling methods, separated by commas, of " + sampling_method_names() + "; without it, all")->delimiter(',');
+  verb->add_option("--methods", options->methods, "Sampling methods, separated by commas, of " + CLI::detail::join(sampling_method_names(), ", ") + "; without it, all")->delimiter(',');
   verb->add_option("--seconds", options->compare.seconds, "Processor time of each render, all threads together")->capture_default_str();
   verb->add_option("--reference-seconds", options->reference_seconds, "Processor time of the reference; without it, 16 times that of a render");
   add_render_options(*verb, options->compare.render);

@@ -44,31 +44,58 @@ class Timed {
   double seconds_ = 0;
 };
 
-/// The scenes with the tables sampled by each method.
+/// The values of another material, drawn in proportion to the cosine.
+class CosineDrawn {
+ public:
+  explicit CosineDrawn(std::shared_ptr<const Bsdf> values) : values_(std::move(values)) {}
+  std::optional<BsdfSample> sample(const glm::vec3& wi, const glm::vec2& u) const noexcept {
+    auto s = cosine_.sample(wi, u);
+    if (s) s->weight = values_->eval(wi, s->wo) * pi<float>;
+    return s;
+  }
+  float pdf(const glm::vec3& wi, const glm::vec3& wo) const noexcept { return cosine_.pdf(wi, wo); }
+  glm::vec3 eval(const glm::vec3& wi, const glm::vec3& wo) const noexcept { return values_->eval(wi, wo); }
+
+ private:
+  std::shared_ptr<const Bsdf> values_;
+  LambertSampler cosine_{glm::vec3(1)};
+};
+
+/// The scenes with the compared materials sampled by each method.
 class Variants {
  public:
-  explicit Variants(const Scene& scene) : scene_(scene) {
-    for (const Material& m : scene.materials) builders_.push_back(m.table ? std::make_unique<MethodBuilder>(m.table, m.model) : nullptr);
+  explicit Variants(const Scene& scene) : scene_(scene), compared_(compared_materials(scene)) {
+    for (const std::size_t k : compared_) {
+      const Material& m = scene.materials[k];
+      builders_.push_back(m.table ? std::make_unique<MethodBuilder>(m.table, m.model) : nullptr);
+    }
   }
   Scene make(SamplingMethod method) {
     Scene scene = scene_;
-    for (std::size_t k = 0; k < builders_.size(); ++k)
-      if (builders_[k]) scene.materials[k].bsdf = builders_[k]->build(method);
+    for (std::size_t k = 0; k < compared_.size(); ++k) {
+      std::shared_ptr<const Bsdf>& bsdf = scene.materials[compared_[k]].bsdf;
+      if (builders_[k])
+        bsdf = builders_[k]->build(method);
+      else if (method == SamplingMethod::cosine)
+        bsdf = make_bsdf(CosineDrawn(bsdf));
+    }
     return scene;
   }
 
  private:
   const Scene& scene_;
-  std::vector<std::unique_ptr<MethodBuilder>> builders_;
+  std::vector<std::size_t> compared_;
+  std::vector<std::unique_ptr<MethodBuilder>> builders_;  // of each of those; none for a stack file
 };
 
-std::vector<std::size_t> pixels_with_tables(const Scene& scene, const std::shared_ptr<const World>& world) {
+std::vector<std::size_t> compared_pixels(const Scene& scene, const std::shared_ptr<const World>& world) {
   const PathTracer tracer(scene, Strategy::mis, 0, world);
+  const std::vector<std::size_t> compared = compared_materials(scene);
   std::vector<std::size_t> pixels;
   for (int y = 0; y < scene.camera.height; ++y)
     for (int x = 0; x < scene.camera.width; ++x) {
       const auto object = tracer.first_object(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-      if (object && scene.materials[scene.objects[*object].material].table)
+      if (object && std::find(compared.begin(), compared.end(), scene.objects[*object].material) != compared.end())
         pixels.push_back(static_cast<std::size_t>(y) * static_cast<std::size_t>(scene.camera.width) + static_cast<std::size_t>(x));
     }
   return pixels;
@@ -81,10 +108,27 @@ RgbImage mean_of(RgbImage a, const RgbImage& b) {
 
 }  // namespace
 
+std::vector<std::size_t> compared_materials(const Scene& scene) {
+  std::vector<std::size_t> tables, stacks;
+  for (std::size_t k = 0; k < scene.materials.size(); ++k) {
+    if (scene.materials[k].table) tables.push_back(k);
+    if (scene.materials[k].stack) stacks.push_back(k);
+  }
+  return tables.empty() ? stacks : tables;
+}
+
+bool method_available(const Scene& scene, SamplingMethod method) {
+  const std::vector<std::size_t> compared = compared_materials(scene);
+  return std::all_of(compared.begin(), compared.end(), [&](std::size_t k) {
+    const Material& m = scene.materials[k];
+    return m.table ? MethodBuilder(m.table, m.model).available(method) : method == SamplingMethod::automatic || method == SamplingMethod::cosine;
+  });
+}
+
 Comparison compare_methods(const Scene& scene, const CompareOptions& options, const Progress& progress) {
   const auto world = std::make_shared<const World>(scene);
-  const std::vector<std::size_t> pixels = pixels_with_tables(scene, world);
-  if (pixels.size() < 2) throw Error("scene: found no pixels that show a measured table, expected some");
+  const std::vector<std::size_t> pixels = compared_pixels(scene, world);
+  if (pixels.size() < 2) throw Error("scene: found no pixels that show a table or a stack file, expected some");
   const double total = options.reference_seconds + options.seconds * 2 * static_cast<double>(options.methods.size());
   double used = 0;
   const auto advance = [&](Timed& timed) {

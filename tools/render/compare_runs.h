@@ -37,9 +37,16 @@ struct Comparison {
   RgbImage reference;
   int reference_samples = 0;
   double reference_relmse = 0;  ///< the reference's own error, known from its two independent halves
-  std::size_t pixels = 0;       ///< those whose centre shows a material with a table: where errors are measured
+  std::size_t pixels = 0;       ///< those whose centre shows a compared material: where errors are measured
   int equal_samples = 0;        ///< the largest power of two that every run has reached
 };
+
+/// The indices of the materials that a comparison is about: those with tables; in a scene that has none, those of
+/// stack files.
+std::vector<std::size_t> compared_materials(const Scene& scene);
+
+/// Whether all of them can be sampled that way: a stack file by its own stack, which is its default, or by the cosine.
+bool method_available(const Scene& scene, SamplingMethod method);
 
 /// Renders the scene with every method (in place of what its tables ask for), with multiple
 /// importance sampling and with material sampling alone, for equal processor time, and measures the
@@ -47,7 +54,7 @@ struct Comparison {
 /// the machine does meets them alike. The reference's own error is subtracted from all.
 ///
 /// Processor time, not that of a clock on the wall: it does not depend on other programs as much.
-/// @throws Error if no pixel shows a table, or a method is not available for one.
+/// @throws Error if no pixel shows a compared material, or a method is not available for one.
 Comparison compare_methods(const Scene& scene, const CompareOptions& options, const Progress& progress = {});
 
 }  // namespace gonio

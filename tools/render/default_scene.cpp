@@ -18,7 +18,7 @@ nlohmann::json default_scene(const std::filesystem::path& material) {
       {"shape": "square", "material": "ground", "scale": 400, "translate": [0, 0, -0.002]}
     ]
   })");
-  scene["materials"]["subject"]["file"] = std::filesystem::absolute(material).string();
+  scene["materials"]["subject"]["file"] = material.string();
   return scene;
 }
 

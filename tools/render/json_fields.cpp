@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include <gonio/fitting/model/parse_json.h>
+#include <gonio/mapping/base/did_you_mean.h>
 #include <gonio/mapping/base/error.h>
 
 namespace gonio {
@@ -24,10 +25,8 @@ bool in_range(const nlohmann::json& value, double low, double high) {
 JsonFields::JsonFields(const nlohmann::json& object, std::string where, std::initializer_list<const char*> known)
     : object_(object), where_(std::move(where)) {
   if (!object.is_object()) throw Error(where_ + (where_.back() == ':' ? " found " : ": found ") + shown(object) + ", expected an object");
-  std::string all;
-  for (const char* name : known) all += (all.empty() ? "" : ", ") + std::string(name);
   for (const auto& [key, value] : object.items())
-    if (std::find(known.begin(), known.end(), key) == known.end()) fail(key, "an unknown field", "one of " + all);
+    if (std::find(known.begin(), known.end(), key) == known.end()) fail(key, "an unknown member", one_of({known.begin(), known.end()}, key));
 }
 
 void JsonFields::fail(const std::string& key, const std::string& found, const std::string& expected) const {

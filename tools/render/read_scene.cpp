@@ -10,6 +10,7 @@
 #include <gonio/mapping/base/bytes.h>
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/fitting/model/parse_json.h>
+#include <gonio/mapping/base/did_you_mean.h>
 #include <gonio/mapping/base/error.h>
 #include <gonio/mapping/light/exr/light_exr.h>
 #include <gonio/tools/input.h>
@@ -117,6 +118,7 @@ class SceneReader {
     if (is_exr(path)) {
       if (f.has("sampling")) f.fail("sampling", "one", "none: a stack file is sampled by its stack");
       m.bsdf = make_scatter(load_bsdf(path));
+      m.stack = true;
       return;
     }
     const bool model = is_model_file(path);
@@ -128,7 +130,7 @@ class SceneReader {
     if (f.has("sampling")) {
       const std::string name = f.text("sampling");
       const auto method = parse_sampling_method(name);
-      if (!method) f.fail("sampling", "'" + name + "'", "one of " + sampling_method_names());
+      if (!method) f.fail("sampling", "'" + name + "'", one_of(sampling_method_names(), name));
       m.sampling = *method;
       if (!MethodBuilder(m.table, m.model).available(m.sampling)) f.fail("sampling", name, "a method for a " + m.table->info().format + " file");
     }
@@ -173,7 +175,11 @@ class SceneReader {
       object.mesh = std::make_shared<const TriangleMesh>(std::move(mesh));
       const std::string material = f.text("material");
       const auto found = index_.find(material);
-      if (found == index_.end()) f.fail("material", "'" + material + "'", "the name of one of the materials");
+      if (found == index_.end()) {
+        std::vector<std::string> names;
+        for (const Material& m : scene_.materials) names.push_back(m.name);
+        f.fail("material", "'" + material + "'", names.empty() ? "a material, of which the scene has none" : one_of(names, material));
+      }
       object.material = found->second;
       if (f.has("emission")) object.emission = f.triple_or_number("emission", 0, max_radiance);
       scene_.objects.push_back(std::move(object));
@@ -211,7 +217,10 @@ Scene make_scene(const nlohmann::json& json, const std::string& where, const fs:
 }
 
 Scene read_scene(const fs::path& path, const CellPolicies& policies) {
-  Scene scene = make_scene(parse_json(read_bytes(path), path.string()), path.string(), path.parent_path(), policies);
+  const nlohmann::json json = parse_json(read_bytes(path), path.string());
+  if (json.is_object() && json.value("format", nlohmann::json()) == "gonio scene")
+    throw Error(path.string() + ": found a manifest of gonio convert --scene (docs/scene.md), expected a scene of gonio render (docs/render.md)");
+  Scene scene = make_scene(json, path.string(), path.parent_path(), policies);
   scene.files.push_back(path);
   return scene;
 }

@@ -9,6 +9,7 @@
 #include <string>
 
 #include <gonio/mapping/base/atomic_file.h>
+#include <gonio/mapping/base/did_you_mean.h>
 #include <gonio/mapping/base/error.h>
 #include <gonio/tools/number.h>
 #include <gonio/tools/options.h>
@@ -47,7 +48,7 @@ Scene load(const Options& options) {
   Scene scene = options.choice.load();
   if (!options.sampling.empty()) {
     const auto method = parse_sampling_method(options.sampling);
-    if (!method) throw Error("--sampling: found '" + options.sampling + "', expected one of " + sampling_method_names());
+    if (!method) throw Error("--sampling: found '" + options.sampling + "', expected " + one_of(sampling_method_names(), options.sampling));
     for (Material& m : scene.materials)
       if (m.table) m.sampling = *method;
   }
@@ -114,7 +115,7 @@ void add_render(CLI::App& app) {
   verb->add_option("-o,--output", options->out, "OpenEXR image with albedo, normal and variance, or tone-mapped .png")->capture_default_str();
   verb->add_option("--samples", options->samples, "Paths a pixel")->capture_default_str();
   verb->add_option("--seconds", options->seconds, "Time for rendering, more than 0, instead of --samples: as many as fit, at least one");
-  verb->add_option("--sampling", options->sampling, "Sampling method of all tables, instead of the scene's: " + sampling_method_names());
+  verb->add_option("--sampling", options->sampling, "Sampling method of all tables, instead of the scene's: " + CLI::detail::join(sampling_method_names(), ", "));
   verb->add_option("--exposure", options->exposure, "Factor of radiances in a .png")->capture_default_str();
   add_render_options(*verb, options->render);
   verb->footer(

@@ -7,6 +7,7 @@
 #include <gonio/brdf/proof/baseline.h>
 #include <gonio/brdf/proof/stack_bsdf.h>
 #include <gonio/fitting/sampling/lobe_sampler.h>
+#include <gonio/mapping/base/did_you_mean.h>
 #include <gonio/mapping/base/error.h>
 #include <gonio/tools/table_fits.h>
 
@@ -23,9 +24,9 @@ std::optional<SamplingMethod> parse_sampling_method(const std::string& name) noe
   return std::nullopt;
 }
 
-std::string sampling_method_names() {
-  std::string names;
-  for (const SamplingMethod method : sampling_methods) names += (names.empty() ? "" : ", ") + std::string(to_string(method));
+std::vector<std::string> sampling_method_names() {
+  std::vector<std::string> names;
+  for (const SamplingMethod method : sampling_methods) names.push_back(to_string(method));
   return names;
 }
 
@@ -73,7 +74,7 @@ std::shared_ptr<const Scatter> MethodBuilder::build(SamplingMethod method, const
     }
     case SamplingMethod::rgl: return make_scatter(RglSampler(table_));
   }
-  throw Error("sampling: found none, expected one of " + sampling_method_names());
+  throw Error("sampling: found none, expected " + one_of(sampling_method_names(), ""));
 }
 
 }  // namespace gonio

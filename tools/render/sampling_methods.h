@@ -29,8 +29,8 @@ inline constexpr SamplingMethod sampling_methods[] = {
 /// The name in scenes and on the command line.
 const char* to_string(SamplingMethod method) noexcept;
 std::optional<SamplingMethod> parse_sampling_method(const std::string& name) noexcept;
-/// All names, for messages.
-std::string sampling_method_names();
+/// All names.
+std::vector<std::string> sampling_method_names();
 
 /// Makes the samplers of one table; stacks and fits that several of them need are made once.
 class MethodBuilder {

@@ -32,6 +32,7 @@ struct Material {
   bool two_sided = true;             ///< the back looks like the front; else it is black
   std::shared_ptr<const BrdfTable> table;  ///< null for materials that have none
   std::optional<LobeModel> model;          ///< that the table was made of
+  bool stack = false;                      ///< of a stack file, whose diagrams `bsdf` draws by
   SamplingMethod sampling = SamplingMethod::automatic;  ///< of the table
 };
 

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
+#include <gonio/mapping/base/did_you_mean.h>
 #include <gonio/mapping/base/error.h>
 #include <gonio/mapping/charts/hemisphere.h>
 
@@ -112,7 +113,7 @@ TriangleMesh make_shape(const std::string& name, const std::string& where) {
   if (name == "odd_tiles") return tiles(1, 2, 24);
   if (name == "sphere") return sphere();
   if (name == "preview") return preview();
-  throw Error(where + ": found '" + name + "', expected square, sphere, even_tiles, odd_tiles or preview");
+  throw Error(where + ": found '" + name + "', expected " + one_of({"square", "sphere", "even_tiles", "odd_tiles", "preview"}, name));
 }
 
 }  // namespace gonio

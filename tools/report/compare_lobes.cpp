@@ -106,7 +106,7 @@ void write_lobes(std::ostream& out, const MaterialReport& material) {
     }
     out << " Its relvar, the mean from 2° to 70°, is " << number(mean_relvar(lobes)) << "; that of `displacement` is "
         << number(mean_relvar(stack)) << ". At equal time it has " << times(c->equal_time) << " the variance ("
-        << number(lobes.ns.sample) << " against " << number(stack.ns.sample) << " ns a sample), at equal bytes "
+        << number(lobes.ns.sample) << " against " << number(stack.ns.sample) << " ns a sample), at equal bytes in memory "
         << times(c->equal_bytes) << " that of `displacement_small` (" << lobes.bytes << " against " << small.bytes
         << " bytes, relvar " << number(mean_relvar(small)) << ").";
     if (c->enough) {

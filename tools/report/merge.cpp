@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <ostream>
 
+#include <nlohmann/json.hpp>
+
 #include <gonio/mapping/base/bytes.h>
 #include <gonio/fitting/model/parse_json.h>
 #include <gonio/mapping/base/atomic_file.h>
@@ -90,33 +92,31 @@ void write_overview(std::ostream& out, const Json& report, const std::vector<std
   for (const Json& light : report["lights"]) out << "\n- " << string_of(member(light, "name")) << ", " << string_of(member(light, "format")) << '\n';
 }
 
-}  // namespace
-
-Json merge_reports(const std::vector<std::filesystem::path>& paths) {
-  Json merged;
-  for (const auto& path : paths) {
-    Json report = load_report(path);
-    if (merged.is_null()) {
-      merged = std::move(report);
-      continue;
-    }
-    for (const char* key : {"materials", "lights"})
-      for (Json& entry : report[key]) merged[key].push_back(std::move(entry));
-    if (member(report, "machine").is_object() && member(merged, "machine").is_object()) add_machine(merged["machine"], report["machine"]);
-    if (report.contains("command")) merged["command"] = string_of(member(merged, "command")) + "; " + string_of(report["command"]);
-    if (report.contains("stability") && !merged.contains("stability")) merged["stability"] = report["stability"];
+void add_report(Json& merged, Json report) {
+  if (merged.is_null()) {
+    merged = std::move(report);
+    return;
   }
-  return merged;
+  for (const char* key : {"materials", "lights"})
+    for (Json& entry : report[key]) merged[key].push_back(std::move(entry));
+  if (member(report, "machine").is_object() && member(merged, "machine").is_object()) add_machine(merged["machine"], report["machine"]);
+  if (report.contains("command")) merged["command"] = string_of(member(merged, "command")) + "; " + string_of(report["command"]);
+  if (report.contains("stability") && !merged.contains("stability")) merged["stability"] = report["stability"];
 }
 
-void write_merged_report(const std::filesystem::path& directory, const std::vector<std::filesystem::path>& paths) {
-  const Json report = merge_reports(paths);
+}  // namespace
+
+void write_merged_report(const std::filesystem::path& directory, const std::vector<std::filesystem::path>& paths, Failures& failures) {
+  Json report;
   std::vector<std::string> pages;  // of each material
-  for (const auto& path : paths) {
-    const std::filesystem::path page = std::filesystem::absolute(path).parent_path() / "report.html";
-    const std::string relative = page.lexically_relative(std::filesystem::absolute(directory).lexically_normal()).generic_string();
-    pages.resize(pages.size() + load_report(path)["materials"].size(), relative);
-  }
+  for (const auto& path : paths)
+    failures.survives([&] {
+      add_report(report, load_report(path));
+      const std::filesystem::path page = std::filesystem::absolute(path).parent_path() / "report.html";
+      const std::string relative = page.lexically_relative(std::filesystem::absolute(directory).lexically_normal()).generic_string();
+      pages.resize(report["materials"].size(), relative);
+    });
+  if (report.is_null()) failures.throw_any(paths.size());
   std::error_code failed;
   std::filesystem::create_directories(directory, failed);
   if (failed) throw Error(directory.string() + ": cannot be made: " + failed.message() + ", expected a folder to write to");

@@ -69,7 +69,7 @@ void measure(const std::filesystem::path& input, const ReportOptions& options, P
   }
   MaterialReport material = measure_material(input, options, [&](double share) { line.update(share); });
   material.sha256 = sha256_of(input);
-  report.materials.push_back(std::move(material));
+  add_material(report, std::move(material));
 }
 
 void print_written_report(const std::filesystem::path& directory) {
@@ -93,16 +93,17 @@ void make_folder(const std::filesystem::path& directory) {
 
 void report_verb(const Options& options, const std::vector<std::string>& arguments) {
   check_outputs(options);
+  Failures failures;
   if (options.merge) {
-    write_merged_report(options.directory, options.inputs);
+    write_merged_report(options.directory, options.inputs, failures);
     print_written_report(options.directory);
+    failures.throw_any(options.inputs.size());
     return;
   }
   Report report;
   report.command = command_line(arguments);
   if (!options.stability.empty()) report.stability = read_stability(options.stability);
   report.machine = this_machine();
-  Failures failures;
   const std::vector<std::filesystem::path> inputs = usable_inputs(options, failures);
   if (!inputs.empty()) make_folder(options.directory);
   for (std::size_t k = 0; k < inputs.size(); ++k) {

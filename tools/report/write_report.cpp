@@ -9,6 +9,7 @@
 #include <gonio/tools/stability/summary.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <iomanip>
 #include <ostream>
@@ -45,11 +46,27 @@ nlohmann::json to_json(const proof::Quality& q) {
 
 std::string kib(std::size_t bytes) { return number(static_cast<double>(bytes) / 1024, 3) + " KiB"; }
 
+/// A picture of a material: its name, as far as a file may have it, with an ending.
+std::string picture_file(const MaterialReport& material, const char* ending) {
+  std::string file = material.name;
+  for (char& c : file) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x80 && !std::isalnum(byte) && c != '-' && c != '.') c = '_';
+  }
+  return file + ending;
+}
+std::string grid_file(const MaterialReport& material) { return picture_file(material, ".svg"); }
+std::string weights_file(const MaterialReport& material) { return picture_file(material, "-weights.svg"); }
+
+bool share_files(const MaterialReport& a, const MaterialReport& b) {
+  return grid_file(a) == grid_file(b) || grid_file(a) == weights_file(b) || weights_file(a) == grid_file(b);
+}
+
 /// The most efficient method of each material.
 void write_overview(std::ostream& out, const Report& report) {
   if (report.materials.empty()) return;
   out << "\nEfficiency is 1 / (ns of a sample × (mean relvar from 2° to 70° + 0.001)).\n\n"
-         "| material | most efficient | sample ns | mean relvar | efficiency | worst weight | memory |\n|---|---|---|---|---|---|---|\n";
+         "| material | most efficient | sample ns | mean relvar | efficiency | worst weight | in memory |\n|---|---|---|---|---|---|---|\n";
   for (const MaterialReport& material : report.materials) {
     const MethodReport* best = best_method(material);
     if (!best) continue;
@@ -69,8 +86,8 @@ void write_markdown(std::ostream& out, const Report& report) {
       << number(report_significance(report), 2) << " (0.01 for the whole report, Sidak) says that draws do not follow the pdf.\n";
   write_overview(out, report);
   for (const MaterialReport& material : report.materials) {
-    out << "\n## " << material.name << "\n\n" << material.format << ", " << kib(material.source_bytes) << " on disk, `" << material.source << "`, SHA-256 `" << material.sha256 << "`\n\n**" << verdict(material) << "**\n\n![grid](" << material.name << ".svg)\n\n"
-        << "| method | chart | memory | build s | sample ns | pdf ns | eval ns | in batches: sample ns | pdf ns | eval ns | efficiency |";
+    out << "\n## " << material.name << "\n\n" << material.format << ", " << kib(material.source_bytes) << " on disk, `" << material.source << "`, SHA-256 `" << material.sha256 << "`\n\n**" << verdict(material) << "**\n\n![grid](" << grid_file(material) << ")\n\n"
+        << "| method | chart | in memory | build s | sample ns | pdf ns | eval ns | in batches: sample ns | pdf ns | eval ns | efficiency |";
     for (const double angle : report_angles) out << " relvar " << angle << "° |";
     out << "\n|---|---|---|---|---|---|---|---|---|---|---|";
     for (std::size_t k = 0; k < std::size(report_angles); ++k) out << "---|";
@@ -94,7 +111,7 @@ void write_markdown(std::ostream& out, const Report& report) {
           << m.coherence.tears + m.coherence.folds << " | " << number(m.convergence.qmc_slope, 2) << " | "
           << number(m.convergence.mc_slope, 2) << " |\n";
     if (!material.front.empty()) {
-      out << "\nWhat memory buys (lobes draw for the table, compact BSDFs need none):\n\n| form | memory | ns | relvar | evaluation error | kept |\n|---|---|---|---|---|---|\n";
+      out << "\nWhat memory buys (lobes draw for the table, compact BSDFs need none):\n\n| form | in memory | ns | relvar | evaluation error | kept |\n|---|---|---|---|---|---|\n";
       for (const nlohmann::json& point : material.front) {
         out << "| " << point["id"].get<std::string>() << " | " << kib(point["bytes"]);
         for (const char* key : {"ns", "relvar", "eval_error"}) out << " | " << number(point[key]);
@@ -132,6 +149,13 @@ double report_significance(const Report& report) {
   for (const auto& material : report.materials)
     for (const auto& method : material.methods) tests += static_cast<int>(method.angles.size());
   return tests > 0 ? proof::sidak(0.01, tests) : 0.01;
+}
+
+void add_material(Report& report, MaterialReport material) {
+  const std::string name = material.name;
+  const auto taken = [&](const MaterialReport& other) { return share_files(material, other); };
+  for (int k = 2; std::any_of(report.materials.begin(), report.materials.end(), taken); ++k) material.name = name + "-" + std::to_string(k);
+  report.materials.push_back(std::move(material));
 }
 
 nlohmann::json to_json(const Report& report) {
@@ -195,8 +219,8 @@ void write_report(const std::filesystem::path& directory, const Report& report) 
   std::filesystem::create_directories(directory, failed);
   if (failed) throw Error(directory.string() + ": cannot be made: " + failed.message() + ", expected a folder to write to");
   for (const MaterialReport& material : report.materials) {
-    if (!material.weights.empty()) write_weights_figure(directory / (material.name + "-weights.svg"), material.name, material.weights);
-    if (material.stack) write_grid_figure(directory / (material.name + ".svg"), material.name, *material.stack);
+    if (!material.weights.empty()) write_weights_figure(directory / weights_file(material), material.name, material.weights);
+    if (material.stack) write_grid_figure(directory / grid_file(material), material.name, *material.stack);
   }
   const nlohmann::json json = to_json(report);
   write_stream_atomically(directory / "report.json", [&](std::ostream& out) { out << json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) << '\n'; });

@@ -7,6 +7,10 @@
 
 namespace gonio {
 
+/// Adds a material, under a name that no other of the report has: with a number after its own if need be. Materials in
+/// the tables, and their pictures, are told apart by it.
+void add_material(Report& report, MaterialReport material);
+
 /// The report with stable keys; see docs/tool.md.
 nlohmann::json to_json(const Report& report);
 

@@ -65,7 +65,7 @@ function speed_accuracy(o) {
   const rows = o.methods.map(m => {
     const x = m.ns[o.time], y = Math.max(relvar_at(m, o.relvar), 1e-6);
     return {...style_of(key_of(m)), x, y, label: title_of(m), size: 70 + 45 * Math.log2(Math.max(1, m.bytes / 16)),
-      tip: {method: title_of(m), time: `${number(x)} ns`, relvar: number(y), bytes: bytes_text(m.bytes), efficiency: number(1 / (x * (y + 0.001)))}};
+      tip: {method: title_of(m), time: `${number(x)} ns`, relvar: number(y), 'in memory': bytes_text(m.bytes), efficiency: number(1 / (x * (y + 0.001)))}};
   }).filter(r => r.x > 0 && Number.isFinite(r.y));
   if (!rows.length) return null;
   rows.sort((a, b) => a.x - b.x || a.y - b.y);
@@ -317,7 +317,7 @@ function memory_front(o) {
   const ids = [...new Set(points.map(p => p.id))];
   const groups = panels.map((panel, k) => {
     const rows = panel.points.map(p => ({...style_of(p.id), x: p.bytes, y: p[panel.field], label: p.chosen ? 'kept' : '', chosen: Boolean(p.chosen),
-      tip: {method: title_of_key(p.id), memory: bytes_text(p.bytes), [panel.title]: number(p[panel.field]), ...(p.ns ? {time: `${number(p.ns)} ns`} : {}), ...(p.chosen ? {chosen: 'yes'} : {})}}));
+      tip: {method: title_of_key(p.id), 'in memory': bytes_text(p.bytes), [panel.title]: number(p[panel.field]), ...(p.ns ? {time: `${number(p.ns)} ns`} : {}), ...(p.chosen ? {chosen: 'yes'} : {})}}));
     rows.sort((a, b) => a.x - b.x || a.y - b.y);
     const ys = log_domain(rows.map(r => r.y), 1.8), at = {x: {scale: 'x', field: 'x'}, y: {scale: 'y', field: 'y'}};
     const label = paint => ({type: 'text', from: {data: 'points'}, encode: {enter: {text: {field: 'datum.label'}, fontSize: {value: 11}, ...paint}},
@@ -328,7 +328,7 @@ function memory_front(o) {
       signals: [{name: 'width', value: width}, {name: 'height', value: height}],
       data: [{name: 'rows', values: rows}, {name: 'front', values: pareto_stairs(rows, xs, ys)}, {name: 'chosen', values: rows.filter(r => r.chosen)}],
       scales: [{name: 'x', type: 'log', domain: xs, range: [0, width]}, {name: 'y', type: 'log', domain: ys, range: [height, 0]}],
-      axes: [{...log_axis('bottom', 'x', xs, 'memory, KiB'), values: log_ticks(xs[0] / 1024, xs[1] / 1024).map(t => 1024 * t), format: undefined,
+      axes: [{...log_axis('bottom', 'x', xs, 'in memory, KiB'), values: log_ticks(xs[0] / 1024, xs[1] / 1024).map(t => 1024 * t), format: undefined,
         encode: {labels: {update: {text: {signal: "format(datum.value / 1024, '~g')"}}}}}, log_axis('left', 'y', ys, panel.title)],
       marks: [
         {type: 'line', name: 'stairs', clip: true, from: {data: 'front'}, encode: {enter: {...at, stroke: {value: o.colors.text}, strokeWidth: {value: 1.2}, opacity: {value: 0.7}}}},

@@ -16,7 +16,7 @@ const time_title = time => time_titles[time] || time;
 // The charts of a material: file name, specification, title, what it shows, and its own controls.
 const charts = [
   {id: 'speed-accuracy', wide: true, make: speed_accuracy, title: 'Speed against accuracy', tools: ['time', 'relvar'],
-    text: 'Lower left is better. Solid line: the Pareto front. Dotted lines: equal efficiency, two a decade down from the best method, at 100 %. The area of a marker grows with the logarithm of the bytes.'},
+    text: 'Lower left is better. Solid line: the Pareto front. Dotted lines: equal efficiency, two a decade down from the best method, at 100 %. The area of a marker grows with the logarithm of the bytes in memory.'},
   {id: 'front', wide: true, make: memory_front, needs: material => (material.front || []).length, title: 'What memory buys',
     text: 'Relative variance and the error of evaluation against memory. Compact BSDFs need no table, and their error is against it. Fitted lobes draw for the table, which their relative variance needs; the error is that of the model alone. Line: the Pareto front. Ringed: the one that is kept.'},
   {id: 'relvar', make: relvar_over_angles, title: 'Relative variance over the incident angle', text: 'The number of samples for a given noise is in proportion to it.'},
@@ -68,7 +68,7 @@ function methods_table(material) {
       p < significance ? `<strong>${number(p, 2)}</strong>` : number(p, 2), number(m.qmc_slope, 2), number(m.coherence.stretch_p99), m.coherence.tears];
     return `<tr${m === best ? ' class="best"' : ''}><td>${key_mark(key_of(m))}${escaped(title_of(m))}${default_mark(m)}</td>${cells.map(c => `<td>${c}</td>`).join('')}</tr>`;
   });
-  const heads = ['method', 'memory', 'build, s', ...times.map(t => `${time_title(t)}, ns`), 'mean relvar', 'efficiency', 'worst weight', 'invalid, max', 'χ² p, min',
+  const heads = ['method', 'in memory', 'build, s', ...times.map(t => `${time_title(t)}, ns`), 'mean relvar', 'efficiency', 'worst weight', 'invalid, max', 'χ² p, min',
     "Sobol' slope", 'stretch', 'tears'];
   return `<table><thead><tr>${heads.map(h => `<th scope="col">${h}</th>`).join('')}</tr></thead><tbody>${rows.join('')}</tbody></table>`;
 }
@@ -95,7 +95,7 @@ function material_html(material, k) {
   const figures = charts.filter(c => !c.needs || c.needs(material)).map(c => figure_html(c, `${material.name}_${c.id}`, (c.tools || []).map(t => tool_html(t, material)).join('')));
   return `<section class="material" id="material-${k}" hidden aria-labelledby="title-${k}"><h2 id="title-${k}">${escaped(material.name)}</h2>` +
     (material.verdict ? `<p class="verdict">${escaped(material.verdict)}</p>` : '') +
-    `<p class="provenance">${escaped(material.format)} file of ${bytes_text(material.source_bytes)}: ${escaped(material.source)}${hash_text(material)}. ` +
+    `<p class="provenance">${escaped(material.format)} file of ${bytes_text(material.source_bytes)} on disk: ${escaped(material.source)}${hash_text(material)}. ` +
     `Measured by gonio ${escaped(report.gonio_version)} on ${escaped(report.machine.cpu)}, ${report.machine.threads} threads, ${escaped(report.machine.compiler)}.</p>` +
     `<div class="charts">${figures.join('')}</div><h3>Methods</h3><div class="scroll methods" tabindex="0" role="region" aria-label="Methods">${methods_table(material)}</div>${fits_table(material)}</section>`;
 }
@@ -105,7 +105,7 @@ function provenance_html() {
   if (report.command) facts.push(['Command', `<code>${escaped(report.command)}</code>`]);
   if (report.seeds) facts.push(['Seeds', Object.entries(report.seeds).map(([what, seed]) => `${escaped(what)} ${seed}`).join(', ')]);
   const files = [...report.materials, ...(report.lights || [])];
-  if (files.some(f => f.sha256)) facts.push(['Inputs', `<ul>${files.map(f => `<li>${escaped(f.source)}, ${bytes_text(f.source_bytes)}${hash_text(f)}</li>`).join('')}</ul>`]);
+  if (files.some(f => f.sha256)) facts.push(['Inputs', `<ul>${files.map(f => `<li>${escaped(f.source)}, ${bytes_text(f.source_bytes)} on disk${hash_text(f)}</li>`).join('')}</ul>`]);
   return facts.length ? `<details><summary>Where the figures come from</summary><dl>${facts.map(([what, text]) => `<dt>${what}</dt><dd>${text}</dd>`).join('')}</dl></details>` : '';
 }
 
@@ -120,7 +120,7 @@ function overview_table() {
       `${cells.map(c => `<td>${c}</td>`).join('')}<td class="left">${verdict}</td></tr>`;
   });
   return '<table><thead><tr><th scope="col">material</th><th scope="col" class="left">format</th><th scope="col" class="left">most efficient</th><th scope="col">sample, ns</th><th scope="col">mean relvar</th>' +
-    `<th scope="col">worst weight</th><th scope="col">memory</th><th scope="col" class="left">a lobe fit enough?</th></tr></thead><tbody>${rows.join('')}</tbody></table>`;
+    `<th scope="col">worst weight</th><th scope="col">in memory</th><th scope="col" class="left">a lobe fit enough?</th></tr></thead><tbody>${rows.join('')}</tbody></table>`;
 }
 
 function lights_html() {
