@@ -212,7 +212,7 @@ void convert(const CLI::App& verb, Options& options) {
 
 void add_convert(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  const StackOptions& stack = options->stack.by_hand;
+  const BsdfOptions& stack = options->stack.by_hand;
   CLI::App* verb = app.add_subcommand(
       "convert", "A table as a stack file (.exr), MERL (.binary), MBSDF (.mbsdf) or RGL (.bsdf)");
   verb->add_option("IN", options->paths,

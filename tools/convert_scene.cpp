@@ -29,7 +29,7 @@ constexpr double tolerances[] = {1, 0.4, 0.15, 0.06, 0.025, 0.01, 0.004};
 std::vector<CompactFit> fits_of(const SceneMaterial& material, std::size_t bytes, const std::string& task) {
   ProgressLine progress(task);
   const BrdfTable table = load_input(material.file);
-  CompactOptions options;
+  BsdfOptions options;
   options.budget = std::max(bytes, options.budget);  // what is too large after all, the split says
   options.incidence = material.incidence;
   try {
@@ -83,8 +83,8 @@ ordered_json material_json(const SceneMaterial& material, const std::vector<Comp
                     {"worst_relvar", fit.quality.worst_relvar},
                     {"evaluation_error", fit.quality.eval_error},
                     {"albedo_error", fit.quality.albedo_error},
-                    {"chart", to_string(fit.diagrams.chart)},
-                    {"incident_angles", fit.diagrams.theta_i.size()},
+                    {"chart", to_string(fit.data.diagrams.chart)},
+                    {"incident_angles", fit.data.diagrams.theta_i.size()},
                     {"even_split", {{"bytes", fits[even].bytes}, {"relvar", fits[even].quality.mean_relvar}}}};
   for (const CompactFit& point : fits)
     json["curve"].push_back({{"bytes", point.bytes}, {"relvar", point.quality.mean_relvar}});
@@ -102,7 +102,7 @@ void print(const std::vector<SceneMaterial>& scene, const std::vector<Curve>& cu
   std::printf("%-24s %7s %9zu %9s %12.3g %11zu\n", "sum", "1", split.bytes, "", split.variance, even.bytes);
   std::printf("summed variance: %.3g; evenly split: %.3g", split.variance, even.variance);
   if (split.variance > 0) std::printf(", %.2f times that", even.variance / split.variance);
-  std::printf("\nbytes are those in memory\n");
+  std::printf("\nbytes are those of 16 bits a crossing\n");
 }
 
 /// None of the inputs would be replaced.
@@ -170,12 +170,9 @@ void convert_scene(const std::filesystem::path& path, std::size_t bytes, const s
     CompactFit& fit = fits[k][split.chosen[k]];
     json["materials"].push_back(material_json(scene[k], fits[k], split.chosen[k], even.chosen[k]));
     StackFile file;
-    file.diagrams = std::move(fit.diagrams);
-    file.colour = std::move(fit.colour);
+    file.bsdf = std::move(fit.data);
     file.name = scene[k].name;
     file.source = scene[k].file.filename().string();
-    file.interpolation = Interpolation::blend;
-    file.storage = Storage::packed16;
     save_stack(out / (scene[k].name + ".exr"), file);
   }
   write_stream_atomically(out / "scene-budget.json", [&](std::ostream& stream) { stream << json.dump(1, ' ', false, ordered_json::error_handler_t::replace) << '\n'; });

@@ -1,4 +1,6 @@
 #include <gonio/brdf/exr/stack_file.h>
+#include <gonio/brdf/build/build_stack.h>
+#include <gonio/brdf/build/colour_of_table.h>
 #include <gonio/brdf/build/fit_compact.h>
 #include <gonio/fitting/fit/fit_json.h>
 #include <gonio/mapping/base/atomic_file.h>
@@ -35,35 +37,33 @@ void by_hand(const std::filesystem::path& in, const std::filesystem::path& out, 
   StackFile file = named(table, in);
   {
     ProgressLine progress("building the stack of " + in.string());
-    StackOptions options = request.by_hand;
-    options.chart = request.charts.size() == 1 ? request.charts.front() : Chart::outgoing;
+    BsdfOptions options = request.by_hand;
+    if (request.charts.size() == 1) options.chart = request.charts.front();
     options.interpolation = request.interpolation.value_or(Interpolation::displacement);
     const Stack<float> stack(build_stack(table, options, [&](double share) { progress.update(share); }), options.interpolation);
-    file.diagrams = stack.grid();
-    file.interpolation = options.interpolation;
-    file.colour = Colour::from_table(table, direction_map(stack), stack.theta_i(), colour_side);
+    file.bsdf = {stack.grid(), options.interpolation, Storage::float32, colour_of_table(table, direction_map(stack), stack.theta_i(), colour_side)};
   }
   save_stack(out, file);
-  std::printf("chart %s, %s, %zu incident angles\n", to_string(file.diagrams.chart), to_string(file.interpolation),
-              file.diagrams.theta_i.size());
+  std::printf("chart %s, %s, %zu incident angles\n", to_string(file.bsdf.diagrams.chart), to_string(file.bsdf.interpolation),
+              file.bsdf.diagrams.theta_i.size());
   print_written(out);
 }
 
-bool missed(const CompactFit& fit, const CompactOptions& options) {
+bool missed(const CompactFit& fit, const BsdfOptions& options) {
   return options.max_variance && fit.quality.worst_relvar > *options.max_variance;
 }
 
 /// What the chosen stack is, and what it was preferred to.
-std::string describe(const CompactChoice& choice, const CompactOptions& options) {
+std::string describe(const CompactChoice& choice, const BsdfOptions& options) {
   const CompactFit& best = choice.best();
-  std::string text = std::string("chart ") + to_string(best.diagrams.chart) + ", " + std::to_string(best.diagrams.theta_i.size()) +
-                     " incident angles, " + std::to_string(best.bytes) + " bytes in memory: relvar at most " +
+  std::string text = std::string("chart ") + to_string(best.data.diagrams.chart) + ", " + std::to_string(best.data.diagrams.theta_i.size()) +
+                     " incident angles, " + std::to_string(best.bytes) + " bytes: relvar at most " +
                      number(best.quality.worst_relvar, 2) + " up to 80 degrees, evaluation error " +
                      number(100 * best.quality.eval_error, 2) + " %, albedo within " + number(100 * best.quality.albedo_error, 2) + " %\n";
   for (std::size_t k = 0; k < choice.tried.size(); ++k) {
     const CompactFit& other = choice.tried[k];
     if (k != choice.chosen)
-      text += std::string("  not ") + to_string(other.diagrams.chart) + ", " + std::to_string(other.bytes) + " bytes in memory: relvar " +
+      text += std::string("  not ") + to_string(other.data.diagrams.chart) + ", " + std::to_string(other.bytes) + " bytes: relvar " +
               number(other.quality.worst_relvar, 2) + ", evaluation error " + number(100 * other.quality.eval_error, 2) + " %\n";
   }
   if (missed(best, options)) text += "  a relvar of " + number(*options.max_variance, 2) + " was not reached within the budget\n";
@@ -99,11 +99,10 @@ void sized(const std::filesystem::path& in, const std::filesystem::path& out, co
     check_writable(request.front);
   }
 
-  CompactOptions options;
+  BsdfOptions options;
   if (request.budget) options.budget = *request.budget, options.max_variance.reset();
   if (request.max_variance) options.max_variance = request.max_variance;
-  options.candidates = request.charts;
-
+  if (request.charts.size() == 1) options.chart = request.charts.front();
 
   std::vector<FrontPoint> points;
   TableFits fits;
@@ -128,16 +127,13 @@ void sized(const std::filesystem::path& in, const std::filesystem::path& out, co
     FrontPoint& p = points[lobes.point];
     p.chosen = true;
     write_stream_atomically(file, [&](std::ostream& stream) { stream << to_json(lobes.fit->fit, lobes.fit->errors); });
-    std::printf("%s, %zu bytes in memory adapted to the table: relvar at most %s up to 80 degrees; a stack takes %zu bytes in memory for %s\n",
+    std::printf("%s, %zu bytes adapted to the table: relvar at most %s up to 80 degrees; a stack takes %zu bytes for %s\n",
                 p.id.c_str(), p.bytes, number(p.relvar, 2).c_str(), best.bytes,
                 number(best.quality.worst_relvar, 2).c_str());
   } else {
     file = stack_file;
     StackFile stack = named(*table, in);
-    stack.diagrams = best.diagrams;
-    stack.colour = best.colour;
-    stack.interpolation = Interpolation::blend;
-    stack.storage = Storage::packed16;
+    stack.bsdf = best.data;
     save_stack(file, stack);
     std::printf("%s", describe(*choice, options).c_str());
   }

@@ -1,6 +1,7 @@
 #include <gonio/brdf/table/albedo.h>
 #include <gonio/mapping/base/bytes.h>
 #include <gonio/brdf/exr/stack_file.h>
+#include <gonio/mapping/stack/packed_stack.h>
 #include <gonio/brdf/table/flat_from.h>
 #include <gonio/brdf/table/measured_to.h>
 #include <gonio/fitting/model/model.h>
@@ -200,32 +201,34 @@ std::string range(const std::vector<DiagramGrid>& diagrams, const Size& size) {
 
 void describe_stack(Facts& facts, const std::string& path) {
   const StackFile file = load_stack(path);
-  const std::vector<DiagramGrid>& diagrams = file.diagrams.diagrams;
+  const std::vector<DiagramGrid>& diagrams = file.bsdf.diagrams.diagrams;
   both(facts, "name", file.name);
   both(facts, "format", "stack of diagrams, version " + std::to_string(stack_file_version));
   both(facts, "source", file.source);
-  both(facts, "chart", to_string(file.diagrams.chart));
-  both(facts, "between", to_string(file.interpolation));
+  both(facts, "chart", to_string(file.bsdf.diagrams.chart));
+  both(facts, "between", to_string(file.bsdf.interpolation));
   both(facts, "size",
         std::to_string(diagrams.size()) + " diagrams of " +
             range(diagrams, [](const DiagramGrid& d) { return d.phi.size(); }) + " meridians x " +
             range(diagrams, [](const DiagramGrid& d) { return d.r.size(); }) + " parallels");
-  angles(facts, file.diagrams.theta_i.front(), file.diagrams.theta_i.back());
+  angles(facts, file.bsdf.diagrams.theta_i.front(), file.bsdf.diagrams.theta_i.back());
   file_bytes(facts, regular_file_size(path));
-  const bool packed = file.storage == Storage::packed16;
-  const std::size_t bytes = packed ? PackedStack(file.diagrams).bytes() : Stack<float>(file.diagrams, file.interpolation).bytes();
-  line(facts, "diagrams", bytes_text(bytes) + " in memory, " + (packed ? "16" : "32") + " bits a crossing");
-  facts.json["diagrams"] = {{"count", diagrams.size()}, {"memory_bytes", bytes}, {"bits_a_crossing", packed ? 16 : 32}};
-  if (file.colour.empty()) {
+  const bool packed = file.bsdf.storage == Storage::packed16;
+  const std::size_t bytes = packed ? PackedStack(file.bsdf.diagrams).bytes() : Stack<float>(file.bsdf.diagrams, file.bsdf.interpolation).bytes();
+  line(facts, "diagrams", bytes_text(bytes) + " at " + (packed ? "16" : "32") + " bits a crossing");
+  facts.json["diagrams"] = {{"count", diagrams.size()}, {"bytes", bytes}, {"bits_a_crossing", packed ? 16 : 32}};
+  if (file.bsdf.colour.empty()) {
     line(facts, "colour", "none: sampling needs the table as well");
     facts.json["colour"] = nullptr;
     return;
   }
-  const Colour& colour = file.colour;
+  const Colour& colour = file.bsdf.colour;
   line(facts, "colour", std::to_string(colour.side()) + " x " + std::to_string(colour.side() / 2) + " cells at " +
-                            std::to_string(colour.theta_i().size()) + " angles, " + bytes_text(colour.bytes()) + " in memory");
-  facts.json["colour"] = {{"side", colour.side()}, {"incident_angles", colour.theta_i().size()}, {"memory_bytes", colour.bytes()}};
-  const CompactBsdf sampler(file.diagrams, file.interpolation, file.storage, file.colour);
+                            std::to_string(colour.theta_i().size()) + " angles, " + bytes_text(colour.bytes()));
+  facts.json["colour"] = {{"side", colour.side()}, {"incident_angles", colour.theta_i().size()}, {"bytes", colour.bytes()}};
+  const Bsdf sampler(file.bsdf);
+  line(facts, "in memory", bytes_text(sampler.bytes()) + " as it is sampled");
+  facts.json["memory_bytes"] = sampler.bytes();
   add_albedo(facts, [&](float theta_i) {
     constexpr int side = 128;
     const glm::vec3 wi(std::sin(theta_i), 0, std::cos(theta_i));

@@ -91,17 +91,17 @@ void add_stack_request(CLI::App& verb, StackRequest& request) {
   add_stack_options(verb, request.by_hand);
 }
 
-void add_stack_options(CLI::App& verb, StackOptions& stack) {
+void add_stack_options(CLI::App& verb, BsdfOptions& stack) {
   verb.add_option("--incident", stack.incident, "At most this many incident angles")
       ->capture_default_str()
       ->group(by_hand);
   verb.add_option_function<std::string>(
-          "--bytes", [&stack](const std::string& text) { stack.bytes = parse_bytes("--bytes", text); },
+          "--bytes", [&stack](const std::string& text) { stack.budget = parse_bytes("--bytes", text); },
           "At most this much memory for the diagrams (once there are seven), such as 1MiB")
       ->type_name("SIZE")
-      ->default_str(std::to_string(stack.bytes / 1024) + "KiB")
+      ->default_str(std::to_string(stack.budget / 1024) + "KiB")
       ->group(by_hand);
-  verb.add_option("--tolerance", stack.tolerance, "Relative variance that is good enough")
+  verb.add_option("--tolerance", stack.max_variance, "Relative variance that is good enough")
       ->capture_default_str()
       ->group(by_hand);
 }

@@ -29,7 +29,7 @@ struct StackRequest {
   std::optional<std::size_t> budget;                        ///< of --budget
   std::string front;                                        ///< of --front
   std::optional<Interpolation> interpolation;               ///< of --interpolation, by hand
-  StackOptions by_hand;
+  BsdfOptions by_hand;
 };
 
 /// The options of a StackRequest; `request` must outlive the parsing. --grid, which means something else for other
@@ -42,7 +42,7 @@ inline constexpr std::initializer_list<const char*> stack_options = {
 
 /// The options --incident, --bytes and --tolerance of a verb that builds stacks.
 /// `stack` must outlive the parsing.
-void add_stack_options(CLI::App& verb, StackOptions& stack);
+void add_stack_options(CLI::App& verb, BsdfOptions& stack);
 
 /// The check of an option whose value is one of these words.
 CLI::Validator known_word(const std::vector<std::string>& known);

@@ -67,8 +67,8 @@ std::vector<Problem> check_stack(const std::filesystem::path& path) {
     problems.push_back({"stack file", text_of(error, path), "one that loads", true});
     return problems;
   }
-  for (std::size_t k = 0; k < file.diagrams.diagrams.size(); ++k) {
-    const DiagramGrid& grid = file.diagrams.diagrams[k];
+  for (std::size_t k = 0; k < file.bsdf.diagrams.diagrams.size(); ++k) {
+    const DiagramGrid& grid = file.bsdf.diagrams.diagrams[k];
     const auto peak =
         std::max_element(grid.density.begin(), grid.density.end()) - grid.density.begin();
     const double integral = grid.density[peak] / Diagram<double>(grid).grid().density[peak];
@@ -78,16 +78,16 @@ std::vector<Problem> check_stack(const std::filesystem::path& path) {
                           "1 over the hemisphere (they are scaled on loading)", false});
     }
   }
-  const double last = file.diagrams.theta_i.back() * 180 / pi<double>;
+  const double last = file.bsdf.diagrams.theta_i.back() * 180 / pi<double>;
   if (last < 80) {
     problems.push_back(
         {"theta_i", "a last diagram at " + number(last, 4) + " degrees", "80 or more", false});
   }
-  if (file.colour.empty()) {
+  if (file.bsdf.colour.empty()) {
     problems.push_back(
         {"colour", "none", "a part colour, without which sampling needs the table", false});
   } else {
-    check_albedo(file.colour, problems);
+    check_albedo(file.bsdf.colour, problems);
   }
   return problems;
 }

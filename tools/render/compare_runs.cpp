@@ -47,7 +47,7 @@ class Timed {
 /// The values of another material, drawn in proportion to the cosine.
 class CosineDrawn {
  public:
-  explicit CosineDrawn(std::shared_ptr<const Bsdf> values) : values_(std::move(values)) {}
+  explicit CosineDrawn(std::shared_ptr<const Scatter> values) : values_(std::move(values)) {}
   std::optional<BsdfSample> sample(const glm::vec3& wi, const glm::vec2& u) const noexcept {
     auto s = cosine_.sample(wi, u);
     if (s) s->weight = values_->eval(wi, s->wo) * pi<float>;
@@ -57,7 +57,7 @@ class CosineDrawn {
   glm::vec3 eval(const glm::vec3& wi, const glm::vec3& wo) const noexcept { return values_->eval(wi, wo); }
 
  private:
-  std::shared_ptr<const Bsdf> values_;
+  std::shared_ptr<const Scatter> values_;
   LambertSampler cosine_{glm::vec3(1)};
 };
 
@@ -73,11 +73,11 @@ class Variants {
   Scene make(SamplingMethod method) {
     Scene scene = scene_;
     for (std::size_t k = 0; k < compared_.size(); ++k) {
-      std::shared_ptr<const Bsdf>& bsdf = scene.materials[compared_[k]].bsdf;
+      std::shared_ptr<const Scatter>& bsdf = scene.materials[compared_[k]].bsdf;
       if (builders_[k])
         bsdf = builders_[k]->build(method);
       else if (method == SamplingMethod::cosine)
-        bsdf = make_bsdf(CosineDrawn(bsdf));
+        bsdf = make_scatter(CosineDrawn(bsdf));
     }
     return scene;
   }

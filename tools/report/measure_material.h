@@ -9,7 +9,7 @@
 namespace gonio {
 
 struct ReportOptions {
-  StackOptions stack;
+  BsdfOptions stack;
   CellPolicies policies;
 };
 

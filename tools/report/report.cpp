@@ -53,7 +53,7 @@ std::vector<std::filesystem::path> usable_inputs(const Options& options, Failure
       if (is_light_file(input))
         load_any_light(input, {}, ignored);
       else if (is_exr(input))
-        load_compact(input);
+        load_bsdf(input);
       else
         load_input(input, options.report.policies);
     });
