@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -71,6 +72,34 @@ TEST(FitCompact, SaysWhatItMissed) {
   const CompactFit fit = fit_compact(*glossy(), options).best();
   EXPECT_LE(fit.bytes, options.budget);
   EXPECT_GT(fit.quality.worst_relvar, *options.max_variance);
+}
+
+/// What it reports of its progress.
+std::vector<double> progress_of(const BsdfOptions& options) {
+  std::vector<double> reported{0};
+  fit_compact(*synthetic("ggx+lambert:alpha=0.3,F0=0.3,albedo=0.3/0.2/0.1", 12, 16), options, [&](double share) { reported.push_back(share); });
+  return reported;
+}
+
+// Whether the variance is within reach, out of it, or not asked for.
+TEST(FitCompact, ProgressGrowsInSmallSteps) {
+  BsdfOptions reached, missed, budget;
+  reached.chart = budget.chart = Chart::outgoing;
+  reached.max_variance = 0.01;
+  missed.max_variance = 0.001;
+  missed.budget = 2 * 1024;
+  budget.max_variance.reset();
+  budget.budget = 4 * 1024;
+  for (const BsdfOptions& options : {reached, missed, budget}) {
+    const std::vector<double> reported = progress_of(options);
+    for (std::size_t k = 1; k < reported.size(); ++k) {
+      EXPECT_GE(reported[k], reported[k - 1]);
+      EXPECT_LT(reported[k] - reported[k - 1], 0.4) << reported[k - 1];
+    }
+    EXPECT_EQ(reported.back(), 1);
+    // At the end and not before.
+    EXPECT_LE(std::count(reported.begin(), reported.end(), 1.0), 2);
+  }
 }
 
 TEST(FitCompact, DiffuseIsAFewHundredBytes) {

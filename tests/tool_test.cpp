@@ -327,6 +327,31 @@ TEST_F(ToolTest, OutputsAreNamed) {
   EXPECT_TRUE(contains(out, "bytes in memory")) << out;
 }
 
+// The table of what was reached: more bytes, less variance, and the last is the file.
+TEST_F(ToolTest, AVarianceOutOfReach) {
+  expect_ok("synth ggx:alpha=0.3,F0=0.5 -o fine.mbsdf");
+  expect_ok("convert fine.mbsdf a.mbsdf --grid 12x16");
+  const std::string out = execute("convert a.mbsdf a.exr --max-variance 0.001 --budget 2KiB --chart outgoing").out;
+  const std::size_t table = out.find("  a relvar of 0.001 was not reached within 2048 bytes; what was:\n  bytes in memory      relvar");
+  ASSERT_NE(table, std::string::npos) << out;
+  std::istringstream lines(out.substr(out.find("chart\n", table) + 6));
+  std::size_t bytes = 0;
+  double relvar = 1e9;
+  std::string line, last;
+  while (std::getline(lines, line) && line.rfind("written: ", 0) != 0) {
+    std::size_t more = 0;
+    double less = 0;
+    ASSERT_TRUE(std::istringstream(line) >> more >> less) << line;
+    EXPECT_GT(more, bytes);
+    EXPECT_LT(less, relvar);
+    bytes = more, relvar = less, last = line;
+  }
+  EXPECT_LE(bytes, 2048u);
+  EXPECT_GT(relvar, 0.001);
+  EXPECT_TRUE(contains(last, ", written")) << out;
+  EXPECT_TRUE(contains(out, " incident angles, " + std::to_string(bytes) + " bytes in memory: relvar at most ")) << out;
+}
+
 TEST_F(ToolTest, ConvertEachIntoAFolder) {
   write("a.mbsdf", sample_mbsdf());
   write("bad.mbsdf", sample_mbsdf().substr(0, 200));

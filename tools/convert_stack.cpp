@@ -13,9 +13,13 @@
 #include <gonio/tools/written.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace gonio {
 namespace {
@@ -53,6 +57,28 @@ bool missed(const CompactFit& fit, const CompactOptions& options) {
   return options.max_variance && fit.quality.worst_relvar > *options.max_variance;
 }
 
+/// What was reached for how many bytes, where it is not what was asked for: a line for each stack that no smaller one is
+/// as good as.
+std::string table_of_missed(const CompactChoice& choice, const BsdfOptions& options) {
+  std::vector<const CompactFit*> fits;
+  for (const CompactFit& fit : choice.tried) fits.push_back(&fit);
+  std::sort(fits.begin(), fits.end(), [](const CompactFit* a, const CompactFit* b) {
+    return std::make_pair(a->bytes, a->quality.worst_relvar) < std::make_pair(b->bytes, b->quality.worst_relvar);
+  });
+  std::string text = "  a relvar of " + number(*options.max_variance, 2) + " was not reached within " + std::to_string(options.budget) +
+                     " bytes; what was:\n  bytes in memory      relvar  evaluation error  chart\n";
+  double least = std::numeric_limits<double>::infinity();
+  for (const CompactFit* fit : fits) {
+    if (fit->quality.worst_relvar >= least) continue;
+    least = fit->quality.worst_relvar;
+    char row[96];
+    std::snprintf(row, sizeof row, "  %15zu  %10.2g  %14.2g %%  %s%s\n", fit->bytes, least, 100 * fit->quality.eval_error,
+                  to_string(fit->data.diagrams.chart), fit == &choice.best() ? ", written" : "");
+    text += row;
+  }
+  return text;
+}
+
 /// What the chosen stack is, and what it was preferred to.
 std::string describe(const CompactChoice& choice, const CompactOptions& options) {
   const CompactFit& best = choice.best();
@@ -60,13 +86,13 @@ std::string describe(const CompactChoice& choice, const CompactOptions& options)
                      " incident angles, " + std::to_string(best.bytes) + " bytes in memory: relvar at most " +
                      number(best.quality.worst_relvar, 2) + " up to 80 degrees, evaluation error " +
                      number(100 * best.quality.eval_error, 2) + " %, albedo within " + number(100 * best.quality.albedo_error, 2) + " %\n";
+  if (missed(best, options)) return text + table_of_missed(choice, options);
   for (std::size_t k = 0; k < choice.tried.size(); ++k) {
     const CompactFit& other = choice.tried[k];
     if (k != choice.chosen)
       text += std::string("  not ") + to_string(other.diagrams.chart) + ", " + std::to_string(other.bytes) + " bytes in memory: relvar " +
               number(other.quality.worst_relvar, 2) + ", evaluation error " + number(100 * other.quality.eval_error, 2) + " %\n";
   }
-  if (missed(best, options)) text += "  a relvar of " + number(*options.max_variance, 2) + " was not reached within the budget\n";
   return text;
 }
 
