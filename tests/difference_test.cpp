@@ -1,4 +1,4 @@
-#include <gonio/tools/render/difference.h>
+#include <gonio/tools/render/image/difference.h>
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include <gonio/tools/render/exr_image.h>
+#include <gonio/tools/render/image/exr_image.h>
 
 #include <gonio/brdf/exr/disk_image_file.h>
 #include <gonio/brdf/exr/stack_file.h>

@@ -1,4 +1,4 @@
-#include <gonio/tools/render/mesh.h>
+#include <gonio/tools/render/mesh/mesh.h>
 
 #include <gonio/mapping/base/error.h>
 #include <gonio/mapping/charts/hemisphere.h>

@@ -1,4 +1,4 @@
-#include <gonio/tools/report/write_page.h>
+#include <gonio/tools/page/write_page.h>
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 #include <gonio/brdf/build/fit_compact.h>
-#include <gonio/tools/render/path_tracer.h>
+#include <gonio/tools/render/trace/path_tracer.h>
 
 #include <gonio/fitting/model/synth.h>
 #include <gonio/tests/table_files.h>
-#include <gonio/tools/render/film.h>
+#include <gonio/tools/render/trace/film.h>
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-#include <gonio/tools/render/read_scene.h>
+#include <gonio/tools/render/scene/read_scene.h>
 
 #include <gonio/mapping/base/error.h>
 #include <gonio/tests/table_files.h>

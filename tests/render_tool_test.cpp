@@ -2,7 +2,7 @@
 
 #include <gonio/fitting/model/model.h>
 #include <gonio/tests/table_files.h>
-#include <gonio/tools/render/exr_image.h>
+#include <gonio/tools/render/image/exr_image.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 

@@ -1,4 +1,4 @@
-#include <gonio/tools/render/sobol.h>
+#include <gonio/tools/render/trace/sobol.h>
 
 #include <gtest/gtest.h>
 

@@ -1,17 +1,6 @@
 #include <gonio/mapping/base/did_you_mean.h>
 #include <gonio/mapping/base/error.h>
-#include <gonio/tools/convert.h>
-#include <gonio/tools/fit.h>
-#include <gonio/tools/help.h>
-#include <gonio/tools/info.h>
-#include <gonio/tools/light/light.h>
-#include <gonio/tools/ndf.h>
-#include <gonio/tools/render/compare.h>
-#include <gonio/tools/render/render.h>
-#include <gonio/tools/report/report.h>
-#include <gonio/tools/stability/stability.h>
-#include <gonio/tools/synth.h>
-#include <gonio/tools/validate.h>
+#include "tools/verbs/verbs.h"
 
 #include <CLI/CLI.hpp>
 #include <cctype>

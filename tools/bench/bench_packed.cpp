@@ -2,7 +2,7 @@
 #include <benchmark/benchmark.h>
 
 #include <gonio/mapping/stack/packed_stack.h>
-#include <gonio/tools/bench/stacks.h>
+#include "tools/bench/stacks.h"
 
 namespace gonio::bench {
 namespace {

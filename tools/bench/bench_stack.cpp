@@ -6,7 +6,7 @@
 #include <string>
 
 #include <gonio/brdf/batch/batch_stack.h>
-#include <gonio/tools/bench/stacks.h>
+#include "tools/bench/stacks.h"
 
 namespace gonio::bench {
 namespace {

@@ -15,7 +15,7 @@
 #include <gonio/brdf/proof/random.h>
 #include <gonio/brdf/proof/stack_bsdf.h>
 #include <gonio/brdf/resample/table_resample.h>
-#include <gonio/tools/bench/stacks.h>
+#include "tools/bench/stacks.h"
 
 namespace gonio::bench {
 namespace {

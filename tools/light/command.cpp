@@ -3,7 +3,7 @@
 #include <gonio/mapping/light/exr/light_exr.h>
 #include <gonio/mapping/light/texture/light_texture.h>
 #include <gonio/mapping/light/photometry.h>
-#include <gonio/tools/light/command.h>
+#include "tools/light/command.h"
 
 #include <map>
 

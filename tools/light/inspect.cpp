@@ -1,8 +1,8 @@
 #include <gonio/mapping/base/error.h>
 #include <gonio/mapping/light/photometry.h>
 #include <gonio/mapping/light/files/text_scanner.h>
-#include <gonio/tools/failures.h>
-#include <gonio/tools/light/command.h>
+#include "tools/cli/failures.h"
+#include "tools/light/command.h"
 
 #include <cmath>
 #include <cstdio>

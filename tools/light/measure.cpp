@@ -2,7 +2,7 @@
 #include <gonio/mapping/light/emission.h>
 #include <gonio/mapping/light/photometry.h>
 #include <gonio/mapping/light/files/text_scanner.h>
-#include <gonio/tools/light/command.h>
+#include "tools/light/command.h"
 
 #include <cstdio>
 #include <random>

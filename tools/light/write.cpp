@@ -2,10 +2,10 @@
 #include <gonio/mapping/base/error.h>
 #include <gonio/mapping/light/exr/light_exr.h>
 #include <gonio/mapping/light/polar_svg.h>
-#include <gonio/tools/check_not_input.h>
-#include <gonio/tools/light/command.h>
-#include <gonio/tools/options.h>
-#include <gonio/tools/written.h>
+#include "tools/cli/check_not_input.h"
+#include "tools/light/command.h"
+#include "tools/cli/options.h"
+#include "tools/cli/written.h"
 
 #include <filesystem>
 

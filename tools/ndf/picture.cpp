@@ -1,4 +1,4 @@
-#include <gonio/tools/ndf/picture.h>
+#include "tools/ndf/picture.h"
 
 #include <png.h>
 
@@ -12,8 +12,8 @@
 
 #include <gonio/mapping/base/atomic_file.h>
 #include <gonio/mapping/base/error.h>
-#include <gonio/tools/base64.h>
-#include <gonio/tools/number.h>
+#include "tools/page/base64.h"
+#include "tools/cli/number.h"
 
 namespace gonio {
 namespace {

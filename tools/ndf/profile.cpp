@@ -1,4 +1,4 @@
-#include <gonio/tools/ndf/profile.h>
+#include "tools/ndf/profile.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,12 @@
-#include <gonio/tools/render/load_scene.h>
+#include "tools/render/load_scene.h"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <tuple>
 
 #include <gonio/mapping/base/error.h>
-#include <gonio/tools/options.h>
-#include <gonio/tools/render/read_scene.h>
+#include "tools/cli/options.h"
+#include "tools/render/scene/read_scene.h"
 
 namespace gonio {
 

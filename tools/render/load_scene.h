@@ -4,8 +4,8 @@
 #include <string>
 
 #include <gonio/brdf/formats/cell_policies.h>
-#include <gonio/tools/render/film.h>
-#include <gonio/tools/render/scene.h>
+#include "tools/render/trace/film.h"
+#include "tools/render/scene/scene.h"
 
 namespace gonio {
 

@@ -1,5 +1,5 @@
 #include <gonio/fitting/model/model.h>
-#include <gonio/tools/report/compare_lobes.h>
+#include "tools/report/compare_lobes.h"
 
 #include <algorithm>
 #include <iomanip>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <gonio/tools/report/report_data.h>
+#include "tools/report/measure/report_data.h"
 
 #include <iosfwd>
 

@@ -1,4 +1,4 @@
-#include <gonio/tools/report/grid_figure.h>
+#include "tools/report/grid_figure.h"
 
 #include <gonio/mapping/base/atomic_file.h>
 

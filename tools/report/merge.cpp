@@ -1,4 +1,4 @@
-#include <gonio/tools/report/merge.h>
+#include "tools/report/merge.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -10,7 +10,7 @@
 #include <gonio/fitting/model/parse_json.h>
 #include <gonio/mapping/base/atomic_file.h>
 #include <gonio/mapping/base/error.h>
-#include <gonio/tools/report/write_page.h>
+#include "tools/page/write_page.h"
 
 namespace gonio {
 namespace {

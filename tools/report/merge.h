@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include <gonio/tools/failures.h>
+#include "tools/cli/failures.h"
 
 namespace gonio {
 

@@ -1,4 +1,4 @@
-#include <gonio/tools/report/provenance.h>
+#include "tools/report/provenance.h"
 
 #include <gonio/mapping/base/bytes.h>
 #include <gonio/mapping/base/error.h>

@@ -1,9 +1,9 @@
-#include <gonio/tools/report/verdict.h>
+#include "tools/report/verdict.h"
 
 #include <iomanip>
 #include <sstream>
 
-#include <gonio/tools/report/compare_lobes.h>
+#include "tools/report/compare_lobes.h"
 
 namespace gonio {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include <gonio/tools/report/report_data.h>
+#include "tools/report/measure/report_data.h"
 
 namespace gonio {
 

@@ -1,12 +1,12 @@
-#include <gonio/tools/number.h>
-#include <gonio/tools/report/write_report.h>
+#include "tools/cli/number.h"
+#include "tools/report/write_report.h"
 
-#include <gonio/tools/report/compare_lobes.h>
-#include <gonio/tools/report/grid_figure.h>
-#include <gonio/tools/report/timing.h>
-#include <gonio/tools/report/verdict.h>
-#include <gonio/tools/report/write_page.h>
-#include <gonio/tools/stability/summary.h>
+#include "tools/report/compare_lobes.h"
+#include "tools/report/grid_figure.h"
+#include "tools/measure/timing.h"
+#include "tools/report/verdict.h"
+#include "tools/page/write_page.h"
+#include "tools/stability/summary.h"
 
 #include <algorithm>
 #include <cctype>

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <iosfwd>
 
-#include <gonio/tools/report/report_data.h>
+#include "tools/report/measure/report_data.h"
 
 namespace gonio {
 

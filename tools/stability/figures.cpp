@@ -1,4 +1,4 @@
-#include <gonio/tools/stability/figures.h>
+#include "tools/stability/figures.h"
 
 #include <algorithm>
 #include <cmath>

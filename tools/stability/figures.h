@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <gonio/mapping/diagram/diagram.h>
-#include <gonio/tools/stability/measure_row.h>
+#include "tools/stability/measure_row.h"
 
 namespace gonio {
 

@@ -1,4 +1,4 @@
-#include <gonio/tools/stability/inputs.h>
+#include "tools/stability/inputs.h"
 
 #include <cmath>
 #include <functional>

@@ -1,4 +1,4 @@
-#include <gonio/tools/stability/measure_row.h>
+#include "tools/stability/measure_row.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <gonio/tools/stability/variants.h>
+#include "tools/stability/variants.h"
 
 namespace gonio {
 

@@ -1,5 +1,5 @@
-#include <gonio/tools/stability/summary.h>
-#include <gonio/tools/number.h>
+#include "tools/stability/summary.h"
+#include "tools/cli/number.h"
 
 #include <gonio/mapping/base/bytes.h>
 #include <gonio/fitting/model/parse_json.h>

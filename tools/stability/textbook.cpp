@@ -1,4 +1,4 @@
-#include <gonio/tools/stability/textbook.h>
+#include "tools/stability/textbook.h"
 
 namespace gonio::textbook {
 

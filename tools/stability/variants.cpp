@@ -1,4 +1,4 @@
-#include <gonio/tools/stability/variants.h>
+#include "tools/stability/variants.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <utility>
 
 #include <gonio/mapping/stack/stack.h>
-#include <gonio/tools/stability/textbook.h>
+#include "tools/stability/textbook.h"
 
 namespace gonio {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <gonio/brdf/proof/bins.h>
-#include <gonio/tools/stability/inputs.h>
+#include "tools/stability/inputs.h"
 
 namespace gonio {
 
