@@ -12,7 +12,7 @@
 
 #include <gonio/brdf/proof/gallery.h>
 #include <gonio/brdf/proof/gtest.h>
-#include <gonio/brdf/proof/random.h>
+#include <gonio/brdf/proof/statistics/random.h>
 #include <gonio/mapping/base/error.h>
 #include <gonio/tests/batch_subject.h>
 #include <gonio/tests/batch_targets.h>

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include <gonio/brdf/proof/chi_square.h>
+#include <gonio/brdf/proof/statistics/chi_square.h>
 #include <gonio/brdf/proof/gallery.h>
-#include <gonio/brdf/proof/random.h>
+#include <gonio/brdf/proof/statistics/random.h>
 #include <gonio/mapping/base/error.h>
 #include <gonio/tests/batch_targets.h>
 

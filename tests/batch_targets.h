@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <gonio/brdf/batch/targets.h>
+#include <gonio/brdf/batch/kernels/targets.h>
 
 #include <hwy/highway.h>
 

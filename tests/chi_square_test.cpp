@@ -1,4 +1,4 @@
-#include <gonio/brdf/proof/chi_square.h>
+#include <gonio/brdf/proof/statistics/chi_square.h>
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <fstream>
 #include <sstream>
 
-#include <gonio/brdf/proof/random.h>
+#include <gonio/brdf/proof/statistics/random.h>
 #include <gonio/mapping/base/error.h>
 #include <gonio/mapping/charts/hemisphere.h>
 

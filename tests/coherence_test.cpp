@@ -7,7 +7,7 @@
 #include <set>
 
 #include <gonio/brdf/proof/gallery.h>
-#include <gonio/brdf/proof/random.h>
+#include <gonio/brdf/proof/statistics/random.h>
 #include <gonio/brdf/bsdf/sampler.h>
 
 namespace gonio::proof {

@@ -1,5 +1,5 @@
 #include <gonio/brdf/bsdf/compact_bsdf.h>
-#include <gonio/brdf/build/fit_compact.h>
+#include <gonio/brdf/build/compact/fit_compact.h>
 #include <gonio/brdf/proof/gallery.h>
 #include <gonio/brdf/proof/gtest.h>
 #include <gonio/mapping/base/error.h>

@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include <gonio/brdf/proof/random.h>
+#include <gonio/brdf/proof/statistics/random.h>
 #include <gonio/mapping/stack/packed_stack.h>
 
 namespace gonio {

@@ -12,9 +12,9 @@
 #include <regex>
 #include <vector>
 
-#include <gonio/brdf/proof/baseline.h>
+#include <gonio/brdf/proof/samplers/baseline.h>
 #include <gonio/brdf/batch/batch_sampler.h>
-#include <gonio/brdf/build/fit_compact.h>
+#include <gonio/brdf/build/compact/fit_compact.h>
 #include <gonio/brdf/proof/gallery.h>
 #include <gonio/fitting/fit/fit.h>
 #include <gonio/fitting/sampling/lobe_sampler.h>
@@ -140,7 +140,7 @@ TEST(SlowEdges, MeasuredLuminaires) {
   int sampled = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(std::filesystem::path(data) / "photometric")) {
     if (!entry.is_regular_file() || entry.path().filename() == "test_file_format_error.ies" || !is_light_file(entry.path())) continue;
-    Deviations ignored;
+    Problems ignored;
     // Draws on the very side of a plane without light are empty.
     EXPECT_LE(expect_emission_sound(entry.path().filename().string(), load_any_light(entry.path(), {}, ignored).diagram), 100u) << entry.path();
     ++sampled;

@@ -77,7 +77,7 @@ TEST(Eulumdat, SymmetriesUnfold) {
 }
 
 TEST(Eulumdat, FactorsAndLampSets) {
-  Deviations deviations;
+  Problems deviations;
   const Luminaire light = testing::from_eulumdat(text_of(1, 1, "\n", "1.5"));
   EXPECT_DOUBLE_EQ(max_intensity(light.diagram), 100 * 2.0 * 1.5);
   EXPECT_DOUBLE_EQ(*light.stated_lumens, 2000 * 0.8);
@@ -189,7 +189,7 @@ TEST(Eulumdat, NumberOfIntensitiesDecidesWhichPlanesThereAre) {
   for (const char* v : {"300", "225", "125", "0"}) all.push_back(v);
   const LightDiagram whole = testing::from_eulumdat(file_with(0, four, all)).diagram;
   for (int isym : {1, 2, 3, 4}) {  // all four planes are stored, whatever Isym says
-    Deviations deviations;
+    Problems deviations;
     const EulumdatFile file = read_eulumdat(file_with(isym, four, all), "a", deviations);
     EXPECT_EQ(file.symmetry, 0);
     EXPECT_EQ(deviations.size(), 1u);
@@ -252,7 +252,7 @@ TEST(Eulumdat, NamesAreNotTakenForIes) {
 // A comma is the decimal point, unless points are and all commas can part thousands.
 TEST(Eulumdat, CommasAreDecimalsOrThousands) {
   const auto light = [](const std::vector<std::string>& values, const std::string& lumens) {
-    Deviations deviations;
+    Problems deviations;
     return to_luminaire(
         read_eulumdat(file_with(1, {0}, values, "name", "Company", lumens), "a", deviations), "a",
         {}, deviations);
@@ -294,9 +294,9 @@ TEST(Eulumdat, RoundTrip) {
                                  testing::narrow_spot(), mirrored, testing::uplight()}) {
     const EulumdatFile file = to_eulumdat(light);
     EXPECT_EQ(file.intensity.size(), file.stored_c().size() * file.gamma.size()) << light.name;
-    Deviations deviations;
+    Problems deviations;
     read_eulumdat(testing::eulumdat_text(light), "test.ldt", deviations);
-    for (const Deviation& d : deviations) ADD_FAILURE() << light.name << ": " << to_string(d);
+    for (const Problem& d : deviations) ADD_FAILURE() << light.name << ": " << to_string(d);
     const Luminaire again = testing::from_eulumdat(testing::eulumdat_text(light));
     EXPECT_LT(testing::largest_difference(light.diagram, again.diagram), 1e-6) << light.name;
     EXPECT_NEAR(again.downward_fraction.value(),
@@ -456,7 +456,7 @@ double plain_quadrature(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   const std::string text((std::istreambuf_iterator<char>(stream)),
                          std::istreambuf_iterator<char>());
-  Deviations deviations;
+  Problems deviations;
   std::vector<double> c, g, v;
   double scale = 1;
   if (light_format(text) == LightFormat::ies) {

@@ -14,7 +14,7 @@
 
 #include <functional>
 
-#include <gonio/brdf/proof/random.h>
+#include <gonio/brdf/proof/statistics/random.h>
 #include "table_files.h"
 
 namespace gonio {

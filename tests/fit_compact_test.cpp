@@ -1,4 +1,4 @@
-#include <gonio/brdf/build/fit_compact.h>
+#include <gonio/brdf/build/compact/fit_compact.h>
 #include <gonio/brdf/proof/measure.h>
 #include <gonio/brdf/bsdf/sampler.h>
 #include <gonio/fitting/model/synth.h>

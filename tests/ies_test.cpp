@@ -32,7 +32,7 @@ TEST(Ies, EveryFieldIsRead) {
       "X\r\nTILT=INCLUDE\r\n1\r\n3\r\n"
       "0 45 90\r\n1.0 0.9 0.8\r\n2 1500 2.5 3 1 1 1 1 2 0.5\r\n0.9 0.8 42\r\n0 45 90\r\n0\r\n10 5 "
       "1\r\n";
-  Deviations deviations;
+  Problems deviations;
   const IesFile f = read_ies(text, "a", deviations);
   EXPECT_EQ(f.standard, "IESNA91");
   EXPECT_EQ(f.keyword("MANUFAC"), "Maker and sons");
@@ -73,7 +73,7 @@ TEST(Ies, SecondFactorIsOneTo1991) {
                         Case{"ANSI/IESNA LM-63-02", 2002, 1, 2}, Case{"IES:LM-63-2019", 2019, 1, 0},
                         Case{"Ies: LM-63-2019", 2019, 1, 1}, Case{"IESNA:LM-63-2040", 0, 1, 2}}) {
     SCOPED_TRACE(c.first_line);
-    Deviations deviations;
+    Problems deviations;
     const IesFile f =
         read_ies(std::string(c.first_line) +
                      "\n[TEST] t\n[TESTLAB] l\n[ISSUEDATE] d\n[MANUFAC] m\nTILT=NONE\n"
@@ -82,7 +82,7 @@ TEST(Ies, SecondFactorIsOneTo1991) {
     EXPECT_EQ(f.edition(), c.edition);
     EXPECT_DOUBLE_EQ(f.factor(), 2 * c.factor);
     int found = 0;
-    for (const Deviation& d : deviations)
+    for (const Problem& d : deviations)
       found += d.field == "first line" || d.field == "future use";
     EXPECT_EQ(found, c.deviations);
   }
@@ -106,13 +106,13 @@ TEST(Ies, KeywordsAndTiltAreReadInAnySpelling) {
     SCOPED_TRACE(line);
     const std::string text = with_tilt(line);
     EXPECT_EQ(light_format(text), LightFormat::ies);
-    Deviations deviations;
+    Problems deviations;
     const IesFile file = read_ies(text, "a", deviations);
     EXPECT_EQ(file.tilt, IesFile::Tilt::none);
     EXPECT_EQ(to_luminaire(file, "a", {}, deviations).diagram.cd, expected.cd);
     EXPECT_EQ(deviations.size(), 1u);
   }
-  Deviations deviations;
+  Problems deviations;
   const IesFile included = read_ies(with_tilt("Tilt = Include\n1 2 0 90 1 0.5"), "a", deviations);
   EXPECT_EQ(included.tilt_factors, (std::vector<double>{1, 0.5}));
   EXPECT_EQ(read_ies(with_tilt("TILT= lamp.tlt"), "a", deviations).tilt_file, "lamp.tlt");
@@ -124,14 +124,14 @@ TEST(Ies, KeywordsAndTiltAreReadInAnySpelling) {
 // What commas between digits mean is what makes the counts come out.
 TEST(Ies, CommasAreReadAsTheCountsHaveIt) {
   const auto cd = [](const std::string& text) {
-    Deviations deviations;
+    Problems deviations;
     return read_ies(text, "a", deviations).candela;
   };
   const auto counts = [](const std::string& text) {
-    Deviations deviations;
+    Problems deviations;
     read_ies(text, "a", deviations);
     return std::count_if(deviations.begin(), deviations.end(),
-                         [](const Deviation& d) { return d.field == "commas"; });
+                         [](const Problem& d) { return d.field == "commas"; });
   };
   using Values = std::vector<double>;
   // Decimal commas; those before a blank are separators all the same.
@@ -161,7 +161,7 @@ TEST(Ies, CommasAreReadAsTheCountsHaveIt) {
   // In TILT tables too.
   std::string tilt = plain("0", "9,5 6,5 3,5", "3 1");
   tilt.replace(tilt.find("TILT=NONE"), 9, "TILT=INCLUDE\n1 2\n0 90\n1,0 0,5");
-  Deviations deviations;
+  Problems deviations;
   EXPECT_EQ(read_ies(tilt, "a", deviations).tilt_factors, (Values{1, 0.5}));
   // No reading gives the counts.
   for (const char* values : {"100,5 90,5", "100,5 90,5 70,5 40,5", "1,234 90,5 70.5,5"})
@@ -319,7 +319,7 @@ TEST(Ies, UglyFilesLoad) {
     EXPECT_EQ(light_format(text), LightFormat::ies);
     EXPECT_EQ(testing::from_ies(text).diagram.cd, expected.diagram.cd);
   }
-  Deviations deviations;
+  Problems deviations;
   read_ies(clean + "END OF FILE 1 2 3", "a", deviations);
   ASSERT_EQ(deviations.size(), 1u);
   EXPECT_NE(to_string(deviations[0]).find("END OF FILE"), std::string::npos);
@@ -366,7 +366,7 @@ TEST(Ies, ShortTablesAreDarkBeyond) {
 }
 
 TEST(Ies, NegativeValuesAndUnequalPolesAreTold) {
-  Deviations deviations;
+  Problems deviations;
   const Luminaire light = to_luminaire(
       read_ies(plain("0 90", "9 -1 0  7 2 0", "3 2"), "a", deviations), "a", {}, deviations);
   ASSERT_EQ(deviations.size(), 2u);
@@ -378,10 +378,10 @@ TEST(Ies, DeviationsHaveTheUnitOfTheFile) {
   const auto told = [](const std::string& values) {
     std::string text = plain("0 180 360", values, "3 3");
     text.replace(text.find("TILT"), 0, "[_INTENSITYUNITS] mW/sr\n");
-    Deviations deviations;
+    Problems deviations;
     to_luminaire(read_ies(text, "a", deviations), "a", {}, deviations);
     std::string all;
-    for (const Deviation& d : deviations) all += to_string(d) + "\n";
+    for (const Problem& d : deviations) all += to_string(d) + "\n";
     return all;
   };
   EXPECT_NE(told("9 1 0  7 2 0  9 1 0").find("7 to 9 mW/sr"), std::string::npos);

@@ -1,4 +1,4 @@
-#include <gonio/brdf/build/incidence_profile.h>
+#include <gonio/brdf/build/budget/incidence_profile.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

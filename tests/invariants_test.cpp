@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include <gonio/brdf/proof/baseline.h>
+#include <gonio/brdf/proof/samplers/baseline.h>
 #include <gonio/brdf/proof/gallery.h>
 #include <gonio/brdf/bsdf/sampler.h>
 

@@ -104,12 +104,12 @@ inline std::string eulumdat_text(const Luminaire& light) {
 }
 
 inline Luminaire from_ies(const std::string& text, const LightOptions& options = {}) {
-  Deviations deviations;
+  Problems deviations;
   return to_luminaire(read_ies(text, "test.ies", deviations), "test.ies", options, deviations);
 }
 
 inline Luminaire from_eulumdat(const std::string& text, const LightOptions& options = {}) {
-  Deviations deviations;
+  Problems deviations;
   return to_luminaire(read_eulumdat(text, "test.ldt", deviations), "test.ldt", options, deviations);
 }
 

@@ -293,7 +293,7 @@ TEST(LightExport, OwnFileKeepsEverything) {
   light.stated_lumens = 123.5;
   const TemporaryFile own("own.exr");
   save_light(own.path(), light);
-  Deviations deviations;
+  Problems deviations;
   const Luminaire again = load_any_light(own.path(), {}, deviations);
   EXPECT_EQ(again.name, light.name);
   EXPECT_EQ(again.unit, light.unit);

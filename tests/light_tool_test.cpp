@@ -52,7 +52,7 @@ TEST_F(LightTool, ConvertKeepsTheLight) {
   const LightDiagram expected = testing::asymmetric().diagram;
   for (const std::string name : {"a.ies", "a.ldt", "a.exr"}) {
     ASSERT_EQ(run("light convert in.ldt " + name), 0) << read("err");
-    Deviations deviations;
+    Problems deviations;
     const Luminaire light = load_any_light(folder_ / name, {}, deviations);
     EXPECT_LT(testing::largest_difference(expected, light.diagram), 2e-6) << name;
   }

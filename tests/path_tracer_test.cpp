@@ -1,4 +1,4 @@
-#include <gonio/brdf/build/fit_compact.h>
+#include <gonio/brdf/build/compact/fit_compact.h>
 #include <gonio/tools/render/trace/path_tracer.h>
 
 #include <gonio/fitting/model/synth.h>

@@ -1,6 +1,6 @@
 // Real materials through the writer and back: slow, since stacks are built.
 
-#include <gonio/brdf/build/fit_compact.h>
+#include <gonio/brdf/build/compact/fit_compact.h>
 #include <gonio/brdf/formats/rgl/rgl_write.h>
 #include <gonio/brdf/table/validate.h>
 #include <gonio/fitting/model/synth.h>

@@ -1,4 +1,4 @@
-#include <gonio/brdf/proof/baseline.h>
+#include <gonio/brdf/proof/samplers/baseline.h>
 #include <gonio/brdf/proof/measure.h>
 #include <gonio/brdf/bsdf/sampler.h>
 
@@ -10,7 +10,7 @@
 #include <limits>
 #include <thread>
 
-#include <gonio/brdf/proof/random.h>
+#include <gonio/brdf/proof/statistics/random.h>
 #include <gonio/mapping/base/error.h>
 
 namespace gonio {

@@ -2,7 +2,7 @@
 
 #include <gonio/mapping/base/bytes.h>
 #include <gonio/brdf/exr/stack_file.h>
-#include <gonio/brdf/build/incidence_profile.h>
+#include <gonio/brdf/build/budget/incidence_profile.h>
 #include <gonio/fitting/model/synth.h>
 #include <gonio/tests/table_files.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include <gonio/brdf/proof/chi_square.h>
+#include <gonio/brdf/proof/statistics/chi_square.h>
 #include <gonio/brdf/proof/coherence.h>
 #include <gonio/mapping/base/error.h>
 #include <gonio/mapping/light/emission.h>

@@ -1,4 +1,4 @@
-#include <gonio/brdf/build/split_budget.h>
+#include <gonio/brdf/build/budget/split_budget.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -9,7 +9,7 @@
 #include <set>
 #include <type_traits>
 
-#include <gonio/brdf/proof/random.h>
+#include <gonio/brdf/proof/statistics/random.h>
 #include <gonio/mapping/diagram/diagram.cpp>  // for Diagram<OperationCounter>
 #include <gonio/mapping/numeric/monotone_root.h>
 #include <gonio/tools/stability/figures.h>

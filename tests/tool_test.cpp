@@ -1,7 +1,7 @@
 // Runs the program GONIO_TOOL as a user does.
 
 #include <gonio/brdf/table/albedo.h>
-#include <gonio/brdf/build/build_stack.h>
+#include <gonio/brdf/build/stack/build_stack.h>
 #include <gonio/mapping/base/bytes.h>
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/tests/table_files.h>

@@ -1,12 +1,12 @@
 #include <gonio/brdf/batch/batch_stack.h>
-#include <gonio/brdf/batch/targets.h>
+#include <gonio/brdf/batch/kernels/targets.h>
 #include <gonio/mapping/numeric/monotone_root.h>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "gonio/brdf/batch/batch_stack.cpp"
 #include <hwy/foreach_target.h>
 
-#include <gonio/brdf/batch/draw-inl.h>
+#include <gonio/brdf/batch/kernels/draw-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace gonio {

@@ -1,5 +1,5 @@
 #include <gonio/brdf/batch/batch_bsdf.h>
-#include <gonio/brdf/batch/targets.h>
+#include <gonio/brdf/batch/kernels/targets.h>
 #include <gonio/brdf/value/frame.h>
 #include <gonio/mapping/numeric/monotone_root.h>
 
@@ -8,9 +8,9 @@
 #define HWY_TARGET_INCLUDE "gonio/brdf/batch/draw_one.cpp"
 #include <hwy/foreach_target.h>
 
-#include <gonio/brdf/batch/cells-inl.h>
-#include <gonio/brdf/batch/frame-inl.h>
-#include <gonio/brdf/batch/search-inl.h>
+#include <gonio/brdf/batch/kernels/cells-inl.h>
+#include <gonio/brdf/batch/kernels/frame-inl.h>
+#include <gonio/brdf/batch/kernels/search-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace gonio {

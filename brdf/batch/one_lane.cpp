@@ -1,5 +1,5 @@
 #include <gonio/brdf/batch/batch_bsdf.h>
-#include <gonio/brdf/batch/targets.h>
+#include <gonio/brdf/batch/kernels/targets.h>
 #include <gonio/mapping/numeric/monotone_root.h>
 
 #define GONIO_LANE_CAP 1
@@ -7,7 +7,7 @@
 #define HWY_TARGET_INCLUDE "gonio/brdf/batch/one_lane.cpp"
 #include <hwy/foreach_target.h>
 
-#include <gonio/brdf/batch/bsdf-inl.h>
+#include <gonio/brdf/batch/kernels/bsdf-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace gonio {

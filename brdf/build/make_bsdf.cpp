@@ -2,9 +2,9 @@
 
 #include <utility>
 
-#include <gonio/brdf/build/build_stack.h>
-#include <gonio/brdf/build/colour_of_table.h>
-#include <gonio/brdf/build/fit_compact.h>
+#include <gonio/brdf/build/stack/build_stack.h>
+#include <gonio/brdf/build/compact/colour_of_table.h>
+#include <gonio/brdf/build/compact/fit_compact.h>
 
 namespace gonio {
 namespace {

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include <gonio/brdf/bsdf/bsdf.h>
-#include <gonio/brdf/build/bsdf_options.h>
+#include <gonio/brdf/build/stack/bsdf_options.h>
 #include <gonio/brdf/table/table.h>
 #include <gonio/mapping/base/progress.h>
 

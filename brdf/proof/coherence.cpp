@@ -5,7 +5,7 @@
 #include <functional>
 #include <iterator>
 
-#include <gonio/brdf/proof/random.h>
+#include <gonio/brdf/proof/statistics/random.h>
 
 namespace gonio::proof {
 namespace {

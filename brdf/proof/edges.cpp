@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <gonio/brdf/proof/incident.h>
-#include <gonio/brdf/proof/random.h>
+#include <gonio/brdf/proof/statistics/random.h>
 
 namespace gonio::proof {
 namespace {

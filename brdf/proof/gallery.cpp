@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include <gonio/brdf/proof/random.h>
+#include <gonio/brdf/proof/statistics/random.h>
 
 namespace gonio::proof {
 namespace {

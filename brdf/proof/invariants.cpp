@@ -10,7 +10,7 @@
 #include <gonio/brdf/proof/coherence.h>
 #include <gonio/brdf/proof/edges.h>
 #include <gonio/brdf/proof/incident.h>
-#include <gonio/brdf/proof/random.h>
+#include <gonio/brdf/proof/statistics/random.h>
 
 namespace gonio::proof {
 namespace {

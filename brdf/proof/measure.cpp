@@ -6,7 +6,7 @@
 #include <gonio/brdf/value/frame.h>
 #include <gonio/brdf/proof/edges.h>
 #include <gonio/brdf/proof/incident.h>
-#include <gonio/brdf/proof/random.h>
+#include <gonio/brdf/proof/statistics/random.h>
 
 namespace gonio::proof {
 namespace {

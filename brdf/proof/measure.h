@@ -4,9 +4,9 @@
 #include <glm/vec3.hpp>
 #include <optional>
 
-#include <gonio/brdf/proof/chi_square.h>
+#include <gonio/brdf/proof/statistics/chi_square.h>
 #include <gonio/brdf/bsdf/bsdf.h>
-#include <gonio/brdf/proof/stack_bsdf.h>
+#include <gonio/brdf/proof/samplers/stack_bsdf.h>
 #include <gonio/mapping/stack/packed_stack.h>
 
 namespace gonio::proof {

@@ -4,7 +4,8 @@
 namespace gonio {
 
 std::string to_string(const Problem& problem) {
-  return problem.field + ": found " + problem.found + ", expected " + problem.expected;
+  const std::string line = problem.line > 0 ? "line " + std::to_string(problem.line) + ": " : "";
+  return line + problem.field + ": found " + problem.found + ", expected " + problem.expected;
 }
 
 void throw_if_fatal(const std::string& file, const std::vector<Problem>& problems) {

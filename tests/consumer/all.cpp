@@ -1,6 +1,6 @@
 // Stores the stack of the table named by the argument beside it and samples it as loaded; then
 // evaluates a sum of analytic lobes.
-#include <gonio/brdf/build/build_stack.h>
+#include <gonio/brdf/build/stack/build_stack.h>
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/brdf/bsdf/sampler.h>
 #include <gonio/fitting/model/model.h>

@@ -14,7 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const LightFormat format = light_format(text);
   if (format == LightFormat::unknown) return 0;
   try {
-    Deviations deviations;
+    Problems deviations;
     const Luminaire light = format == LightFormat::ies
                                 ? to_luminaire(read_ies(text, "fuzz", deviations), "fuzz", {}, deviations)
                                 : to_luminaire(read_eulumdat(text, "fuzz", deviations), "fuzz", {}, deviations);

@@ -6,14 +6,14 @@
 #include <memory>
 #include <string>
 
-#include <gonio/brdf/proof/baseline.h>
+#include <gonio/brdf/proof/samplers/baseline.h>
 #include <gonio/brdf/bsdf/bsdf.h>
-#include <gonio/brdf/build/build_stack.h>
-#include <gonio/brdf/build/colour_of_table.h>
-#include <gonio/brdf/build/fit_compact.h>
+#include <gonio/brdf/build/stack/build_stack.h>
+#include <gonio/brdf/build/compact/colour_of_table.h>
+#include <gonio/brdf/build/compact/fit_compact.h>
 #include <gonio/brdf/proof/gallery.h>
-#include <gonio/brdf/proof/random.h>
-#include <gonio/brdf/proof/stack_bsdf.h>
+#include <gonio/brdf/proof/statistics/random.h>
+#include <gonio/brdf/proof/samplers/stack_bsdf.h>
 #include <gonio/brdf/resample/table_resample.h>
 #include "tools/bench/stacks.h"
 

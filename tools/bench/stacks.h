@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <gonio/brdf/proof/random.h>
+#include <gonio/brdf/proof/statistics/random.h>
 #include <gonio/mapping/stack/stack.h>
 
 namespace gonio::bench {

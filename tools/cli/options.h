@@ -1,6 +1,6 @@
 #pragma once
 
-#include <gonio/brdf/build/build_stack.h>
+#include <gonio/brdf/build/stack/build_stack.h>
 
 #include <CLI/App.hpp>
 #include <CLI/Validators.hpp>

@@ -1,6 +1,6 @@
 #include <gonio/brdf/exr/stack_file.h>
-#include <gonio/brdf/build/fit_compact.h>
-#include <gonio/brdf/build/split_budget.h>
+#include <gonio/brdf/build/compact/fit_compact.h>
+#include <gonio/brdf/build/budget/split_budget.h>
 #include <gonio/mapping/base/atomic_file.h>
 #include <gonio/mapping/base/error.h>
 #include "tools/cli/check_not_input.h"

@@ -1,7 +1,7 @@
 #include <gonio/brdf/exr/stack_file.h>
-#include <gonio/brdf/build/build_stack.h>
-#include <gonio/brdf/build/colour_of_table.h>
-#include <gonio/brdf/build/fit_compact.h>
+#include <gonio/brdf/build/stack/build_stack.h>
+#include <gonio/brdf/build/compact/colour_of_table.h>
+#include <gonio/brdf/build/compact/fit_compact.h>
 #include <gonio/fitting/fit/fit_json.h>
 #include <gonio/mapping/base/atomic_file.h>
 #include <gonio/mapping/base/error.h>

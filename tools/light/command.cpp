@@ -27,14 +27,14 @@ LightOptions LightCommand::reading() const {
   return o;
 }
 
-Luminaire load_as_is(const std::string& file, const LightCommand& o, Deviations& deviations) {
+Luminaire load_as_is(const std::string& file, const LightCommand& o, Problems& deviations) {
   if (!is_light_file(file))
     throw Error(file + ": found " + describe_file(file) + ", expected a luminaire (IES, EULUMDAT or light EXR)");
   return load_any_light(file, o.reading(), deviations);
 }
 
 Luminaire load(const std::string& file, const LightCommand& o) {
-  Deviations ignored;
+  Problems ignored;
   Luminaire light = load_as_is(file, o, ignored);
   const LightNormalisation mode = o.normalise == "flux"      ? LightNormalisation::flux
                                   : o.normalise == "maximum" ? LightNormalisation::maximum

@@ -35,7 +35,7 @@ void light_compare(const LightCommand& o);
 
 /// Loads a file as it is. @throws Error as load_any_light(); a file of another kind is named as
 /// what it is, with the verb that takes it.
-Luminaire load_as_is(const std::string& file, const LightCommand& o, Deviations& deviations);
+Luminaire load_as_is(const std::string& file, const LightCommand& o, Problems& deviations);
 /// Loads a file and normalises it as the command says.
 Luminaire load(const std::string& file, const LightCommand& o);
 

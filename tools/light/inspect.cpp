@@ -1,4 +1,5 @@
 #include <gonio/mapping/base/error.h>
+#include <gonio/mapping/base/format_number.h>
 #include <gonio/mapping/light/photometry.h>
 #include <gonio/mapping/light/files/text_scanner.h>
 #include "tools/cli/failures.h"
@@ -15,7 +16,7 @@ constexpr double degree = pi<double> / 180;
 std::string shown(const std::string& text) { return text.empty() ? "-" : text; }
 
 void print_light(const std::string& file, const LightCommand& o) {
-  Deviations deviations;
+  Problems deviations;
   const Luminaire light = load_as_is(file, o, deviations);
   const Photometry p = photometry(light.diagram);
   const auto line = [](const char* name, const std::string& value) {
@@ -78,14 +79,14 @@ void light_info(const LightCommand& o) {
 void light_validate(const LightCommand& o) {
   int broken = 0, deviating = 0;
   for (const std::string& file : o.files) {
-    Deviations deviations;
+    Problems deviations;
     try {
       const Luminaire light = load_as_is(file, o, deviations);
       const double total = flux(light.diagram);
       if (light.stated_lumens && std::abs(total / *light.stated_lumens - 1) > 0.05)
-        deviations.push_back({0, "flux",
+        deviations.push_back({"flux",
                               format_number(total) + " " + flux_unit(light) + " by quadrature",
-                              format_number(*light.stated_lumens) + " as the file states"});
+                              format_number(*light.stated_lumens) + " as the file states", false});
       std::printf("%s: %s, %zu deviation%s\n", file.c_str(), light.format.c_str(),
                   deviations.size(), deviations.size() == 1 ? "" : "s");
       deviating += !deviations.empty();
@@ -93,7 +94,7 @@ void light_validate(const LightCommand& o) {
       std::printf("%s: rejected\n  %s\n", file.c_str(), error.what());
       ++broken;
     }
-    for (const Deviation& d : deviations) std::printf("  %s\n", to_string(d).c_str());
+    for (const Problem& d : deviations) std::printf("  %s\n", to_string(d).c_str());
   }
   if (broken > 0)
     throw Error("found " + std::to_string(broken) + " of " + std::to_string(o.files.size()) +

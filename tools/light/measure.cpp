@@ -1,4 +1,5 @@
 #include <gonio/mapping/base/error.h>
+#include <gonio/mapping/base/format_number.h>
 #include <gonio/mapping/light/emission.h>
 #include <gonio/mapping/light/photometry.h>
 #include <gonio/mapping/light/files/text_scanner.h>

@@ -1,4 +1,4 @@
-#include <gonio/brdf/build/compact_quality.h>
+#include <gonio/brdf/build/compact/compact_quality.h>
 #include <gonio/fitting/fit/brdf_function.h>
 #include <gonio/fitting/sampling/lobe_sampler.h>
 #include "tools/measure/size_front.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <gonio/brdf/build/fit_compact.h>
+#include <gonio/brdf/build/compact/fit_compact.h>
 #include <gonio/brdf/table/table.h>
 #include "tools/measure/table_fits.h"
 

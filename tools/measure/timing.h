@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <gonio/brdf/bsdf/bsdf.h>
-#include <gonio/brdf/proof/random.h>
+#include <gonio/brdf/proof/statistics/random.h>
 
 namespace gonio {
 

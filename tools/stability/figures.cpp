@@ -6,7 +6,7 @@
 #include <ostream>
 #include <sstream>
 
-#include <gonio/brdf/proof/random.h>
+#include <gonio/brdf/proof/statistics/random.h>
 #include <gonio/mapping/base/atomic_file.h>
 #include <gonio/mapping/charts/concentric.h>
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include <gonio/brdf/proof/gallery.h>
-#include <gonio/brdf/proof/random.h>
+#include <gonio/brdf/proof/statistics/random.h>
 
 namespace gonio {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <gonio/brdf/proof/chi_square.h>
-#include <gonio/brdf/proof/random.h>
+#include <gonio/brdf/proof/statistics/chi_square.h>
+#include <gonio/brdf/proof/statistics/random.h>
 #include <gonio/mapping/stack/stack.h>
 
 namespace gonio {

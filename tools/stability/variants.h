@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <gonio/brdf/proof/bins.h>
+#include <gonio/brdf/proof/statistics/bins.h>
 #include "tools/stability/inputs.h"
 
 namespace gonio {

@@ -35,7 +35,7 @@ struct Options {
 };
 
 LightReport measure_light(const std::filesystem::path& path) {
-  Deviations ignored;
+  Problems ignored;
   const Luminaire light = load_any_light(path, {}, ignored);
   return {path.stem().string(), path.string(), light.format, std::filesystem::file_size(path), sha256_of(path), flux(light.diagram), emission_quality(light.diagram)};
 }
@@ -49,7 +49,7 @@ std::vector<std::filesystem::path> usable_inputs(const Options& options, Failure
     const std::filesystem::path& input = options.inputs[k];
     const ProgressLine line("reading " + input.string() + of_all(k, options.inputs.size()));
     const bool loads = failures.survives([&] {
-      Deviations ignored;
+      Problems ignored;
       if (is_light_file(input))
         load_any_light(input, {}, ignored);
       else if (is_exr(input))

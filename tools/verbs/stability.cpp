@@ -1,7 +1,7 @@
 #include "tools/cli/number.h"
 #include "tools/verbs/verbs.h"
 
-#include <gonio/brdf/proof/chi_square.h>
+#include <gonio/brdf/proof/statistics/chi_square.h>
 #include <gonio/mapping/base/atomic_file.h>
 #include <gonio/mapping/base/error.h>
 #include "tools/cli/progress.h"

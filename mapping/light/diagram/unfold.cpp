@@ -1,5 +1,5 @@
 #include <gonio/mapping/base/error.h>
-#include <gonio/mapping/light/files/text_scanner.h>
+#include <gonio/mapping/base/format_number.h>
 #include <gonio/mapping/light/diagram/unfold.h>
 
 #include <algorithm>
@@ -68,7 +68,7 @@ struct Meridian {
 
 /// The parallels: those of the file, dark ones where the file stops short of a hemisphere.
 void complete_parallels(std::vector<double>& gamma, std::vector<Meridian>& meridians,
-                        const std::string& name, Deviations& deviations) {
+                        const std::string& name, Problems& deviations) {
   for (double& g : gamma)
     for (double edge : {0.0, 90.0, 180.0})
       if (std::abs(g - edge) < same_angle) g = edge;
@@ -87,14 +87,14 @@ void complete_parallels(std::vector<double>& gamma, std::vector<Meridian>& merid
     });
   };
   if (last != 90 && last != 180) {
-    deviations.push_back({0, "vertical angles", "the last at " + format_number(last),
-                          "90 or 180; taken as dark beyond"});
+    deviations.push_back({"vertical angles", "the last at " + format_number(last),
+                          "90 or 180; taken as dark beyond", false});
     if (!dark(false)) insert(false, last + edge);
     insert(false, last < 90 ? 90 : 180);
   }
   if (first != 0 && first != 90) {
-    deviations.push_back({0, "vertical angles", "the first at " + format_number(first),
-                          "0 or 90; taken as dark before"});
+    deviations.push_back({"vertical angles", "the first at " + format_number(first),
+                          "0 or 90; taken as dark before", false});
     if (!dark(true)) insert(true, first - edge);
     insert(true, first > 90 ? 90 : 0);
   }
@@ -105,7 +105,7 @@ void complete_parallels(std::vector<double>& gamma, std::vector<Meridian>& merid
 
 /// One value where all meridians meet.
 void unite_pole(std::vector<Meridian>& meridians, bool front, const FoldedLight& folded,
-                double largest, Deviations& deviations) {
+                double largest, Problems& deviations) {
   const auto value = [&](Meridian& m) -> double& { return front ? m.cd.front() : m.cd.back(); };
   double lowest = value(meridians.front()), highest = lowest, sum = 0, weight = 0;
   for (std::size_t i = 0; i < meridians.size(); ++i) {
@@ -121,9 +121,9 @@ void unite_pole(std::vector<Meridian>& meridians, bool front, const FoldedLight&
   const double mean = sum / weight;
   if (highest - lowest > 1e-6 * largest)
     deviations.push_back(
-        {0, front ? "intensity at the pole gamma = 0" : "intensity at the pole gamma = 180",
+        {front ? "intensity at the pole gamma = 0" : "intensity at the pole gamma = 180",
          format_number(lowest) + " to " + format_number(highest) + " " + folded.unit,
-         "one value; the mean " + format_number(mean) + " is taken"});
+         "one value; the mean " + format_number(mean) + " is taken", false});
   for (Meridian& m : meridians) value(m) = mean;
 }
 
@@ -132,7 +132,7 @@ void unite_pole(std::vector<Meridian>& meridians, bool front, const FoldedLight&
 const char* to_string(LightSymmetry symmetry) noexcept { return rule_of(symmetry).name; }
 
 LightDiagram unfold(const FoldedLight& folded, const LightFrame& frame, const std::string& name,
-                    Deviations& deviations) {
+                    Problems& deviations) {
   check_angles(folded.c, "horizontal angles", name);
   check_angles(folded.gamma, "vertical angles", name);
   const std::size_t n = folded.gamma.size();
@@ -142,8 +142,8 @@ LightDiagram unfold(const FoldedLight& folded, const LightFrame& frame, const st
   std::size_t negative = 0;
   for (double v : folded.cd) largest = std::max(largest, v), negative += v < 0;
   if (negative > 0)
-    deviations.push_back({0, "intensities", std::to_string(negative) + " negative values",
-                          "values >= 0; taken as 0"});
+    deviations.push_back({"intensities", std::to_string(negative) + " negative values",
+                          "values >= 0; taken as 0", false});
 
   std::vector<Meridian> meridians;
   for (std::size_t i = 0; i < folded.c.size(); ++i)
@@ -167,9 +167,9 @@ LightDiagram unfold(const FoldedLight& folded, const LightFrame& frame, const st
       difference = std::max(difference, std::abs(meridians[i].cd[j] - meridians[i - 1].cd[j]));
     if (difference > 1e-6 * largest)
       deviations.push_back(
-          {0, "intensities at C = " + format_number(meridians[i].c),
+          {"intensities at C = " + format_number(meridians[i].c),
            "two meridians that differ by up to " + format_number(difference) + " " + folded.unit,
-           "equal ones; the first is taken"});
+           "equal ones; the first is taken", false});
     meridians.erase(meridians.begin() + static_cast<std::ptrdiff_t>(i));
   }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <gonio/mapping/light/files/deviation.h>
+#include <gonio/mapping/base/problem.h>
 #include <gonio/mapping/light/diagram/light_diagram.h>
 
 #include <string>
@@ -38,7 +38,7 @@ struct FoldedLight {
 /// at the edges of a sector) it falls to zero over `edge_width`.
 /// @throws Error naming `name` if an angle list is empty, not ascending or out of range.
 LightDiagram unfold(const FoldedLight& folded, const LightFrame& frame, const std::string& name,
-                    Deviations& deviations);
+                    Problems& deviations);
 
 /// Width [rad] of the slope with which an abrupt edge is represented: a thousandth of a degree.
 inline constexpr double edge_width = 1e-3 * pi<double> / 180;

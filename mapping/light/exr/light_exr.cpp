@@ -206,7 +206,7 @@ bool is_light_file(const std::filesystem::path& path) {
 }
 
 Luminaire load_any_light(const std::filesystem::path& path, const LightOptions& options,
-                         Deviations& deviations) {
+                         Problems& deviations) {
   return is_exr(path) ? load_light_exr(path) : load_light(path, options, deviations);
 }
 

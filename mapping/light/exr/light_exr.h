@@ -28,7 +28,7 @@ bool is_light_file(const std::filesystem::path& path);
 
 /// load_light() for all formats: IES, EULUMDAT and the EXR of this library, told by content.
 Luminaire load_any_light(const std::filesystem::path& path, const LightOptions& options,
-                         Deviations& deviations);
+                         Problems& deviations);
 
 /// Images of the whole sphere for renderers, channel "Y" (32-bit float, [cd]). A pixel holds the
 /// mean intensity over its solid angle (4 x 4 points), so the sum over the pixels keeps the flux.

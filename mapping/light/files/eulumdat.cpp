@@ -1,4 +1,5 @@
 #include <gonio/mapping/base/error.h>
+#include <gonio/mapping/base/format_number.h>
 #include <gonio/mapping/light/files/eulumdat.h>
 #include <gonio/mapping/light/files/text_scanner.h>
 
@@ -11,15 +12,15 @@ namespace {
 /// Fields by line.
 class Fields {
  public:
-  Fields(std::string name, std::string_view text, Comma comma, Deviations& deviations)
+  Fields(std::string name, std::string_view text, Comma comma, Problems& deviations)
       : scanner_(std::move(name), text), comma_(comma), deviations_(deviations) {}
 
   std::string text(const char* field, std::size_t most) {
     const int line = scanner_.line();
     std::string value(scanner_.next_line(field));
     if (value.size() > most)
-      deviations_.push_back({line, field, std::to_string(value.size()) + " characters",
-                             "at most " + std::to_string(most)});
+      deviations_.push_back({field, std::to_string(value.size()) + " characters",
+                             "at most " + std::to_string(most), false, line});
     return value;
   }
   double number(const char* field) {
@@ -35,8 +36,8 @@ class Fields {
     const std::string_view line = scanner_.next_line(field);
     double value;
     if (parse(line, value)) return value;
-    deviations_.push_back({line_number, field, "\"" + std::string(line.substr(0, 40)) + "\"",
-                           "a number; taken as " + format_number(otherwise)});
+    deviations_.push_back({field, "\"" + std::string(line.substr(0, 40)) + "\"",
+                           "a number; taken as " + format_number(otherwise), false, line_number});
     return otherwise;
   }
   int integer(const char* field, int lowest, int highest) {
@@ -80,7 +81,7 @@ class Fields {
 
   TextScanner scanner_;
   Comma comma_;
-  Deviations& deviations_;
+  Problems& deviations_;
   bool points_ = false, could_be_thousands_ = false, decimal_commas_ = false;
 };
 
@@ -148,14 +149,14 @@ void check_order(const TextScanner& scanner, const std::vector<double>& c) {
 }
 
 /// The number of planes that the symmetry of `f` leaves in the file.
-std::size_t planes_expected(const EulumdatFile& f, Deviations& deviations) {
+std::size_t planes_expected(const EulumdatFile& f, Problems& deviations) {
   const std::size_t mc = f.c.size();
   if (f.symmetry < 2) return f.symmetry == 1 ? 1 : mc;
   const Planes planes = planes_of(f.c, f.symmetry);
   if (planes.stored == planes.c.size()) {
     if (mc > 1)
       deviations.push_back(
-          {0, "Mc", std::to_string(mc) + ", the stored planes alone", "the number of all planes"});
+          {"Mc", std::to_string(mc) + ", the stored planes alone", "the number of all planes", false});
     return planes.stored;
   }
   // Where no plane lies in the plane of symmetry the first of the next half is stored too.
@@ -165,14 +166,14 @@ std::size_t planes_expected(const EulumdatFile& f, Deviations& deviations) {
 }
 
 /// Settles which planes the intensities of `f` belong to: their number says it.
-void check_planes(const TextScanner& scanner, EulumdatFile& f, Deviations& deviations) {
+void check_planes(const TextScanner& scanner, EulumdatFile& f, Problems& deviations) {
   check_order(scanner, f.c);
   const std::size_t ng = f.gamma.size(), found = f.intensity.size();
   const std::size_t expected = planes_expected(f, deviations);
   const bool closed = f.c.size() == 1 || widest_gap(planes_in(f.c, {0, 360})) < 180 - same_plane;
   if (found == f.c.size() * ng && found != expected * ng && closed) {
-    deviations.push_back({0, "Isym", std::to_string(f.symmetry) + ", but intensities of all planes",
-                          "those of the stored planes only; all are used, as with 0"});
+    deviations.push_back({"Isym", std::to_string(f.symmetry) + ", but intensities of all planes",
+                          "those of the stored planes only; all are used, as with 0", false});
     f.symmetry = 0;
   } else if (found != expected * ng) {
     scanner.fail("luminous intensities",
@@ -181,9 +182,9 @@ void check_planes(const TextScanner& scanner, EulumdatFile& f, Deviations& devia
                  std::to_string(expected * ng) + " (" + std::to_string(expected) + " planes of " +
                      std::to_string(ng) + " gamma angles)");
   } else if (f.symmetry == 0 && !closed) {
-    deviations.push_back({0, "C angles",
+    deviations.push_back({"C angles",
                           format_number(f.c.front()) + " to " + format_number(f.c.back()),
-                          "a full turn; closed by interpolation"});
+                          "a full turn; closed by interpolation", false});
   }
 }
 
@@ -193,9 +194,9 @@ bool even(const std::vector<double>& angles, double step) {
   return true;
 }
 
-void check(const EulumdatFile& f, std::size_t lamp_sets, Deviations& deviations) {
+void check(const EulumdatFile& f, std::size_t lamp_sets, Problems& deviations) {
   const auto note = [&](const char* field, const std::string& found, const char* expected) {
-    deviations.push_back({0, field, found, expected});
+    deviations.push_back({field, found, expected, false});
   };
   if (f.c.size() > 721) note("Mc", std::to_string(f.c.size()), "at most 721");
   if (f.gamma.size() > 361) note("Ng", std::to_string(f.gamma.size()), "at most 361");
@@ -222,7 +223,7 @@ void check(const EulumdatFile& f, std::size_t lamp_sets, Deviations& deviations)
   if (f.tilt != 0) note("tilt", format_number(f.tilt), "usually 0; not applied");
 }
 
-EulumdatFile read(Fields& in, Deviations& deviations) {
+EulumdatFile read(Fields& in, Problems& deviations) {
   EulumdatFile f;
   f.company = in.text("company", 78);
   f.type = in.integer("Ityp", 0, 3);
@@ -263,8 +264,8 @@ EulumdatFile read(Fields& in, Deviations& deviations) {
   f.intensity = in.numbers_ahead("luminous intensities");
   check_planes(in.scanner(), f, deviations);
   if (!in.scanner().only_blanks_left())
-    deviations.push_back({in.scanner().line(), "after the last intensity",
-                          "\"" + in.scanner().rest() + "\"", "the end of the file; ignored"});
+    deviations.push_back({"after the last intensity",
+                          "\"" + in.scanner().rest() + "\"", "the end of the file; ignored", false, in.scanner().line()});
   check(f, f.lamp_sets.size(), deviations);
   return f;
 }
@@ -280,20 +281,20 @@ std::vector<double> EulumdatFile::stored_c() const {
   return planes;
 }
 
-EulumdatFile read_eulumdat(std::string_view text, const std::string& name, Deviations& deviations) {
-  const Deviations before = deviations;
+EulumdatFile read_eulumdat(std::string_view text, const std::string& name, Problems& deviations) {
+  const Problems before = deviations;
   Fields in(name, text, Comma::decimal, deviations);
   EulumdatFile file = read(in, deviations);
   if (!in.commas_could_be_thousands()) return file;
   if (!in.has_points()) {
-    deviations.push_back({0, "commas", "some that can part thousands, and no decimal points",
-                          "decimal points; read as such"});
+    deviations.push_back({"commas", "some that can part thousands, and no decimal points",
+                          "decimal points; read as such", false});
     return file;
   }
   deviations = before;
   Fields again(name, text, Comma::thousands, deviations);
   file = read(again, deviations);
-  deviations.push_back({0, "commas", "between thousands", "decimal points; read as found"});
+  deviations.push_back({"commas", "between thousands", "decimal points; read as found", false});
   return file;
 }
 

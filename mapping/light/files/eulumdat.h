@@ -1,6 +1,6 @@
 #pragma once
 
-#include <gonio/mapping/light/files/deviation.h>
+#include <gonio/mapping/base/problem.h>
 
 #include <array>
 #include <ostream>
@@ -60,7 +60,7 @@ struct EulumdatFile {
 /// @param name of the file, for messages.
 /// @throws Error naming line and field if it is not such a file: text where a number belongs,
 ///   counts out of range, other intensities than the planes have, planes out of order.
-EulumdatFile read_eulumdat(std::string_view text, const std::string& name, Deviations& deviations);
+EulumdatFile read_eulumdat(std::string_view text, const std::string& name, Problems& deviations);
 
 /// Writes `file`; numbers have seven digits.
 void write_eulumdat(std::ostream& stream, const EulumdatFile& file);

@@ -1,4 +1,5 @@
 #include <gonio/mapping/base/error.h>
+#include <gonio/mapping/base/format_number.h>
 #include <gonio/mapping/light/files/ies.h>
 #include <gonio/mapping/light/files/text_scanner.h>
 
@@ -112,43 +113,43 @@ Comma read_with_commas(TextScanner& scanner, IesFile& file, const Read& read) {
               "do not give the counts either)");
 }
 
-void check_header(const IesFile& file, Deviations& deviations) {
+void check_header(const IesFile& file, Problems& deviations) {
   static constexpr std::string_view known[] = {
       "IESNA91",          "IESNA:LM-63-1995", "IESNA:LM-63-2002", "IES:LM-63-2019",
       "IESNA:LM-63-1991", "IESNA:LM-63-2019", "IESNA:LM-63-1986"};
   const std::string& s = file.standard;
   const int edition = file.edition();
   if (s.empty())
-    deviations.push_back({1, "first line", "no mark of a standard",
-                          "IES:LM-63-2019 or an older one; read as LM-63-1986"});
+    deviations.push_back({"first line", "no mark of a standard",
+                          "IES:LM-63-2019 or an older one; read as LM-63-1986", false, 1});
   else if (std::none_of(std::begin(known), std::end(known), [&](auto k) { return s == k; }))
     deviations.push_back(
-        {1, "first line", s,
+        {"first line", s,
          "IESNA91, IESNA:LM-63-1995, IESNA:LM-63-2002 or IES:LM-63-2019; read as LM-63-" +
-             std::to_string(edition > 0 ? edition : 2002)});
+             std::to_string(edition > 0 ? edition : 2002), false, 1});
   if (edition == 1986) return;
   for (const char* required : {"TEST", "TESTLAB", "ISSUEDATE", "MANUFAC"}) {
     const bool since_1991 =
         std::string_view(required) == "TEST" || std::string_view(required) == "MANUFAC";
     if (!since_1991 && (edition == 1991 || edition == 1995)) continue;
     if (file.keyword(required).empty())
-      deviations.push_back({0, std::string("[") + required + "]", "none", "a required keyword"});
+      deviations.push_back({std::string("[") + required + "]", "none", "a required keyword", false});
   }
   for (std::size_t i = 0; i < file.labels.size(); ++i)
     if (!file.labels[i].empty() && file.labels[i].front() != '[')
-      deviations.push_back({static_cast<int>(i) + 2, "label",
+      deviations.push_back({"label",
                             "\"" + file.labels[i].substr(0, 30) + "\"",
-                            "a line that begins with a [KEYWORD]"});
+                            "a line that begins with a [KEYWORD]", false, static_cast<int>(i) + 2});
 }
 
-void check_angles(const IesFile& f, Deviations& deviations) {
+void check_angles(const IesFile& f, Problems& deviations) {
   const auto one_of = [](double v, std::initializer_list<double> values) {
     return std::any_of(values.begin(), values.end(),
                        [&](double x) { return std::abs(x - v) < 1e-6; });
   };
   const auto check = [&](const char* field, double v, std::initializer_list<double> values,
                          const char* expected) {
-    if (!one_of(v, values)) deviations.push_back({0, field, format_number(v), expected});
+    if (!one_of(v, values)) deviations.push_back({field, format_number(v), expected, false});
   };
   if (f.type == IesFile::Type::c) {
     check("first vertical angle", f.vertical.front(), {0, 90}, "0 or 90 for type C");
@@ -165,30 +166,30 @@ void check_angles(const IesFile& f, Deviations& deviations) {
   }
 }
 
-void check_values(const IesFile& f, Deviations& deviations) {
+void check_values(const IesFile& f, Problems& deviations) {
   if (f.lumens_per_lamp < 0 && f.lumens_per_lamp != -1)
     deviations.push_back(
-        {0, "lumens per lamp", format_number(f.lumens_per_lamp), "-1 for absolute photometry"});
+        {"lumens per lamp", format_number(f.lumens_per_lamp), "-1 for absolute photometry", false});
   if (f.lumens_per_lamp == 0)
     deviations.push_back(
-        {0, "lumens per lamp", "0", "a positive number, or -1 for absolute photometry"});
+        {"lumens per lamp", "0", "a positive number, or -1 for absolute photometry", false});
   if (!(f.multiplier > 0))
     deviations.push_back(
-        {0, "candela multiplier", format_number(f.multiplier), "a positive number"});
+        {"candela multiplier", format_number(f.multiplier), "a positive number", false});
   if (!(f.ballast_factor > 0))
     deviations.push_back(
-        {0, "ballast factor", format_number(f.ballast_factor), "a positive number"});
+        {"ballast factor", format_number(f.ballast_factor), "a positive number", false});
   const int edition = f.edition();
   if (f.second_factor != 1 && (edition == 1995 || edition == 2002 || edition == 0))
-    deviations.push_back({0, "future use", format_number(f.second_factor), "1; not applied"});
+    deviations.push_back({"future use", format_number(f.second_factor), "1; not applied", false});
   if (f.watts <= 0)
-    deviations.push_back({0, "input watts", format_number(f.watts), "a positive number"});
+    deviations.push_back({"input watts", format_number(f.watts), "a positive number", false});
 }
 
 /// Takes a TILT= line to pieces. False for one that is a label: its value names no way of TILT, and
 /// no numbers follow it.
 bool read_tilt(const TextScanner& scanner, int line, std::string_view text, std::string_view value,
-               IesFile& file, Deviations& deviations) {
+               IesFile& file, Problems& deviations) {
   const std::string upper = upper_case(value);
   if (upper == "NONE") {
     file.tilt = IesFile::Tilt::none;
@@ -204,12 +205,12 @@ bool read_tilt(const TextScanner& scanner, int line, std::string_view text, std:
   const std::string standard =
       "TILT=" + (file.tilt == IesFile::Tilt::file ? file.tilt_file : upper);
   if (text != standard)
-    deviations.push_back({line, "TILT", "\"" + std::string(text) + "\"", standard});
+    deviations.push_back({"TILT", "\"" + std::string(text) + "\"", standard, false, line});
   return true;
 }
 
 /// Everything up to and with the line TILT=.
-void read_labels(TextScanner& scanner, IesFile& file, Deviations& deviations) {
+void read_labels(TextScanner& scanner, IesFile& file, Problems& deviations) {
   for (bool first = true;; first = false) {
     if (scanner.at_end()) scanner.fail("TILT", "no line that begins with TILT=", "one");
     const int number = scanner.line();
@@ -219,7 +220,7 @@ void read_labels(TextScanner& scanner, IesFile& file, Deviations& deviations) {
       return;
     if (line.size() > 256)
       deviations.push_back(
-          {number, "label", std::to_string(line.size()) + " characters", "at most 256"});
+          {"label", std::to_string(line.size()) + " characters", "at most 256", false, number});
     if (first && names_ies_standard(line))
       file.standard = line;
     else
@@ -291,18 +292,18 @@ std::string IesFile::keyword(std::string_view name) const {
   return value;
 }
 
-IesFile read_ies(std::string_view text, const std::string& name, Deviations& deviations) {
+IesFile read_ies(std::string_view text, const std::string& name, Problems& deviations) {
   TextScanner scanner(name, text);
   IesFile file;
   read_labels(scanner, file, deviations);
   const Comma comma = read_with_commas(scanner, file, read_numbers);
   if (comma != Comma::separator)
-    deviations.push_back({0, "commas", comma_names[static_cast<int>(comma)],
-                          "between numbers only; read as found, since the counts come out so"});
+    deviations.push_back({"commas", comma_names[static_cast<int>(comma)],
+                          "between numbers only; read as found, since the counts come out so", false});
   if (!scanner.only_blanks_left())
-    deviations.push_back({scanner.line(), "after the last candela value",
-                          "\"" + scanner.rest() + "\"", "the end of the file; ignored"});
-  if (file.lamps == 0) deviations.push_back({0, "number of lamps", "0", "at least 1"});
+    deviations.push_back({"after the last candela value",
+                          "\"" + scanner.rest() + "\"", "the end of the file; ignored", false, scanner.line()});
+  if (file.lamps == 0) deviations.push_back({"number of lamps", "0", "at least 1", false});
   check_header(file, deviations);
   check_angles(file, deviations);
   check_values(file, deviations);

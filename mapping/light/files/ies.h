@@ -1,6 +1,6 @@
 #pragma once
 
-#include <gonio/mapping/light/files/deviation.h>
+#include <gonio/mapping/base/problem.h>
 
 #include <optional>
 #include <ostream>
@@ -65,7 +65,7 @@ std::optional<std::string_view> tilt_value(std::string_view line);
 /// @param name of the file, for messages.
 /// @throws Error naming line and field if it is not such a file: a missing TILT=, text where a
 ///   number belongs, too few or too many numbers, counts out of range.
-IesFile read_ies(std::string_view text, const std::string& name, Deviations& deviations);
+IesFile read_ies(std::string_view text, const std::string& name, Problems& deviations);
 
 /// Parses the contents of the file that TILT=<name> refers to into the tilt fields of `file`.
 /// @throws Error as read_ies().

@@ -1,5 +1,6 @@
 #include <gonio/mapping/base/bytes.h>
 #include <gonio/mapping/base/error.h>
+#include <gonio/mapping/base/format_number.h>
 #include <gonio/mapping/light/files/luminaire.h>
 #include <gonio/mapping/light/files/text_scanner.h>
 
@@ -10,10 +11,10 @@ namespace gonio {
 namespace {
 
 /// The text of a photometric file.
-std::string read_text(const std::filesystem::path& path, Deviations& deviations) {
+std::string read_text(const std::filesystem::path& path, Problems& deviations) {
   const std::string bytes = read_bytes(path);
   std::string text = without_utf16(bytes);
-  if (text != bytes) deviations.push_back({0, "encoding", "UTF-16", "ASCII; converted"});
+  if (text != bytes) deviations.push_back({"encoding", "UTF-16", "ASCII; converted", false});
   return text;
 }
 
@@ -32,7 +33,7 @@ double tilt_factor(const IesFile& file, double degrees) {
 
 /// The symmetry that the range of horizontal angles implies (LM-63-2002, 5.13 and annex; 1995 for
 /// 90-270). A range that is turned by whole halves or quadrants implies the same.
-LightSymmetry ies_symmetry(const std::vector<double>& horizontal, Deviations& deviations) {
+LightSymmetry ies_symmetry(const std::vector<double>& horizontal, Problems& deviations) {
   const double first = horizontal.front(), span = horizontal.back() - first;
   const auto is = [](double a, double b) { return std::abs(a - b) < 1e-6; };
   const auto multiple = [&](double angle, double of) {
@@ -44,8 +45,8 @@ LightSymmetry ies_symmetry(const std::vector<double>& horizontal, Deviations& de
   if (is(span, 180) && multiple(first, 90)) return LightSymmetry::c90_c270;
   if (is(span, 360)) return LightSymmetry::none;
   deviations.push_back(
-      {0, "horizontal angles", format_number(first) + " to " + format_number(horizontal.back()),
-       "0 to 90, 0 to 180, 90 to 270 or 0 to 360; closed to a full turn by interpolation"});
+      {"horizontal angles", format_number(first) + " to " + format_number(horizontal.back()),
+       "0 to 90, 0 to 180, 90 to 270 or 0 to 360; closed to a full turn by interpolation", false});
   return LightSymmetry::none;
 }
 
@@ -149,7 +150,7 @@ EulumdatLikeness eulumdat_likeness(std::string_view text) {
 }  // namespace
 
 Luminaire to_luminaire(const IesFile& file, const std::string& name, const LightOptions& options,
-                       Deviations& deviations) {
+                       Problems& deviations) {
   Luminaire light;
   static constexpr const char* type_names[] = {"C", "B", "A"};
   light.format = (file.standard.empty() ? std::string("IES LM-63-1986") : "IES " + file.standard) +
@@ -175,7 +176,7 @@ Luminaire to_luminaire(const IesFile& file, const std::string& name, const Light
 
   double factor = file.factor();
   if (file.tilt == IesFile::Tilt::file && file.tilt_angles.empty())
-    deviations.push_back({0, "TILT", file.tilt_file, "a file beside this one; taken as NONE"});
+    deviations.push_back({"TILT", file.tilt_file, "a file beside this one; taken as NONE", false});
   else if (file.tilt != IesFile::Tilt::none)
     factor *= tilt_factor(file, options.tilt * 180 / pi<double>);
   if (!(factor > 0) || !std::isfinite(factor))
@@ -233,7 +234,7 @@ Luminaire to_luminaire(const IesFile& file, const std::string& name, const Light
 }
 
 Luminaire to_luminaire(const EulumdatFile& file, const std::string& name,
-                       const LightOptions& options, Deviations& deviations) {
+                       const LightOptions& options, Problems& deviations) {
   Luminaire light;
   light.format = "EULUMDAT";
   light.manufacturer = to_utf8(file.company);
@@ -254,11 +255,11 @@ Luminaire to_luminaire(const EulumdatFile& file, const std::string& name,
       light.stated_lumens = lumens * file.light_output_ratio / 100;
     }
     if (file.lamp_sets.size() > 1)
-      deviations.push_back({0, "lamp sets", std::to_string(file.lamp_sets.size()),
-                            "alternatives; set " + std::to_string(options.lamp_set) + " is taken"});
+      deviations.push_back({"lamp sets", std::to_string(file.lamp_sets.size()),
+                            "alternatives; set " + std::to_string(options.lamp_set) + " is taken", false});
   }
   if (!light.lamp_lumens)
-    deviations.push_back({0, "lamp flux", "none", "a positive number; 1000 lm are taken"});
+    deviations.push_back({"lamp flux", "none", "a positive number; 1000 lm are taken", false});
   light.downward_fraction = file.downward_fraction / 100;
   light.round = file.luminous_width == 0 && file.luminous_length > 0;
   const double y = file.luminous_length / 1000, x = light.round ? y : file.luminous_width / 1000;
@@ -297,7 +298,7 @@ LightFormat light_format(std::string_view text) {
 }
 
 Luminaire load_light(const std::filesystem::path& path, const LightOptions& options,
-                     Deviations& deviations) {
+                     Problems& deviations) {
   const std::string text = read_text(path, deviations), name = path.string();
   switch (light_format(text)) {
     case LightFormat::ies: {
@@ -321,7 +322,7 @@ Luminaire load_light(const std::filesystem::path& path, const LightOptions& opti
 }
 
 Luminaire load_light(const std::filesystem::path& path, const LightOptions& options) {
-  Deviations ignored;
+  Problems ignored;
   return load_light(path, options, ignored);
 }
 
@@ -360,7 +361,7 @@ namespace {
 
 /// True if programs that find the planes of Isym 3 by index, as mc1 = 3 Mc/4 + 1 says, find C270.
 bool holds_from_c270(const LightDiagram& d) {
-  Deviations none;
+  Problems none;
   const std::vector<double> c =
       unfold(fold(d, LightSymmetry::c90_c270), d.frame, "EULUMDAT", none).c;
   const std::size_t mc = c.size() - 1;
@@ -374,7 +375,7 @@ EulumdatFile to_eulumdat(const Luminaire& light) {
   LightSymmetry symmetry = find_symmetry(full);
   if (symmetry == LightSymmetry::c90_c270 && !holds_from_c270(full)) symmetry = LightSymmetry::none;
   const FoldedLight folded = fold(full, symmetry);
-  Deviations none;
+  Problems none;
   const LightDiagram diagram =
       unfold(folded, LightFrame{}, "EULUMDAT", none);  // as a reader will see it
   EulumdatFile file;

@@ -52,9 +52,9 @@ struct LightOptions {
 /// The meaning of a parsed file. @param name for messages. @throws Error if angles or values cannot
 /// be used, or the lamp set does not exist.
 Luminaire to_luminaire(const IesFile& file, const std::string& name, const LightOptions& options,
-                       Deviations& deviations);
+                       Problems& deviations);
 Luminaire to_luminaire(const EulumdatFile& file, const std::string& name,
-                       const LightOptions& options, Deviations& deviations);
+                       const LightOptions& options, Problems& deviations);
 
 enum class LightFormat { unknown, ies, eulumdat };
 
@@ -67,7 +67,7 @@ LightFormat light_format(std::string_view text);
 /// for beside it.
 /// @throws Error naming the file if it cannot be read, is neither, or is broken.
 Luminaire load_light(const std::filesystem::path& path, const LightOptions& options,
-                     Deviations& deviations);
+                     Problems& deviations);
 Luminaire load_light(const std::filesystem::path& path, const LightOptions& options = {});
 
 /// The luminaire as an LM-63-2002 file of type C, with the strongest symmetry that holds. Absolute

@@ -1,5 +1,5 @@
 #include <gonio/mapping/base/error.h>
-#include <gonio/mapping/light/files/deviation.h>
+#include <gonio/mapping/base/format_number.h>
 #include <gonio/mapping/light/files/text_scanner.h>
 
 #include <algorithm>
@@ -53,11 +53,6 @@ void append_utf8(std::string& text, unsigned c) {
 }
 
 }  // namespace
-
-std::string to_string(const Deviation& d) {
-  const std::string where = d.line > 0 ? "line " + std::to_string(d.line) + ": " : std::string();
-  return where + d.field + ": found " + d.found + ", expected " + d.expected;
-}
 
 std::string_view trimmed(std::string_view text) noexcept {
   while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
@@ -137,19 +132,6 @@ std::string shortened(const std::string& text, std::size_t bytes) {
   if (text.size() <= bytes) return text;
   while (bytes > 0 && (static_cast<unsigned char>(text[bytes]) & 0xC0) == 0x80) --bytes;
   return text.substr(0, bytes);
-}
-
-std::string format_number(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.7g", value == 0 ? 0 : value);  // -0 is 0
-  return text;
-}
-
-std::string format_quantity(double value) {
-  char text[400];
-  const bool small = value != 0 && std::abs(value) < 1;
-  std::snprintf(text, sizeof text, small ? "%.4g" : "%.2f", value);
-  return text;
 }
 
 TextScanner::TextScanner(std::string name, std::string_view text)

@@ -77,9 +77,5 @@ std::string upper_case(std::string_view text);
 std::string to_utf8(std::string_view text);
 /// UTF-8 text cut to at most `bytes`, between characters.
 std::string shortened(const std::string& text, std::size_t bytes);
-/// `value` with at most seven significant digits, the shortest such text; never "-0".
-std::string format_number(double value);
-/// `value` for people: two decimals, or four significant digits below 1.
-std::string format_quantity(double value);
 
 }  // namespace gonio

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include <gonio/brdf/build/make_bsdf.h>
-#include <gonio/brdf/proof/baseline.h>
-#include <gonio/brdf/proof/stack_bsdf.h>
+#include <gonio/brdf/proof/samplers/baseline.h>
+#include <gonio/brdf/proof/samplers/stack_bsdf.h>
 #include <gonio/fitting/sampling/lobe_sampler.h>
 #include <gonio/mapping/base/did_you_mean.h>
 #include <gonio/mapping/base/error.h>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <gonio/brdf/build/build_stack.h>
+#include <gonio/brdf/build/stack/build_stack.h>
 #include <gonio/fitting/model/model.h>
 #include "tools/render/material/scatter.h"
 

@@ -194,7 +194,7 @@ class SceneReader {
     for (std::size_t k = 0; k < all.size(); ++k) {
       JsonFields f(all[k], fields_.where("lights[" + std::to_string(k) + "]"), {"file", "position", "rotate", "scale"});
       GoniometricLight light;
-      Deviations deviations;
+      Problems deviations;
       light.emission = std::make_shared<const EmissionSampler<float>>(load_any_light(file(f), {}, deviations).diagram);
       light.position = f.triple("position");
       light.to_light = glm::transpose(glm::mat3(placement(f, false)));

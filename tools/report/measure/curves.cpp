@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include <gonio/brdf/proof/random.h>
+#include <gonio/brdf/proof/statistics/random.h>
 #include <gonio/mapping/charts/hemisphere.h>
 
 namespace gonio {

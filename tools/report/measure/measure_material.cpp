@@ -14,9 +14,9 @@
 #include "tools/measure/size_front.h"
 #include "tools/measure/timing.h"
 
-#include <gonio/brdf/proof/baseline.h>
+#include <gonio/brdf/proof/samplers/baseline.h>
 #include <gonio/brdf/exr/stack_file.h>
-#include <gonio/brdf/build/fit_compact.h>
+#include <gonio/brdf/build/compact/fit_compact.h>
 #include <gonio/mapping/base/parallel.h>
 #include <gonio/fitting/fit/fit_json.h>
 #include <gonio/fitting/sampling/lobe_sampler.h>

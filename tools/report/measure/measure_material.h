@@ -4,7 +4,7 @@
 
 #include "tools/report/measure/report_data.h"
 
-#include <gonio/brdf/build/build_stack.h>
+#include <gonio/brdf/build/stack/build_stack.h>
 
 namespace gonio {
 
