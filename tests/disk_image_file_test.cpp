@@ -1,4 +1,4 @@
-#include <gonio/brdf/exr/disk_image_file.h>
+#include <gonio/brdf/ndf/image/disk_image_file.h>
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/mapping/base/error.h>
 #include <gtest/gtest.h>

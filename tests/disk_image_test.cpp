@@ -1,4 +1,4 @@
-#include <gonio/brdf/ndf/disk_image.h>
+#include <gonio/brdf/ndf/image/disk_image.h>
 #include <gonio/mapping/base/error.h>
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Runs the verb ndf of the program GONIO_TOOL as a user does.
 
-#include <gonio/brdf/exr/disk_image_file.h>
+#include <gonio/brdf/ndf/image/disk_image_file.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 

@@ -1,5 +1,5 @@
 #include <gonio/brdf/ndf/radial_ndf.h>
-#include <gonio/brdf/ndf/shadowing.h>
+#include <gonio/brdf/ndf/image/shadowing.h>
 #include <gonio/mapping/base/error.h>
 #include <gtest/gtest.h>
 

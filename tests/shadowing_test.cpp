@@ -1,4 +1,4 @@
-#include <gonio/brdf/ndf/shadowing.h>
+#include <gonio/brdf/ndf/image/shadowing.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include <gonio/mapping/sphere/solid_angle.h>
+#include <gonio/brdf/ndf/image/solid_angle.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

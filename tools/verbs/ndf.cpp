@@ -1,10 +1,10 @@
 #include "tools/verbs/verbs.h"
 
 #include <gonio/mapping/base/atomic_file.h>
-#include <gonio/brdf/exr/disk_image_file.h>
+#include <gonio/brdf/ndf/image/disk_image_file.h>
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/brdf/ndf/radial_ndf.h>
-#include <gonio/brdf/ndf/shadowing.h>
+#include <gonio/brdf/ndf/image/shadowing.h>
 #include <gonio/mapping/base/error.h>
 #include "tools/cli/check_not_input.h"
 #include "tools/cli/input.h"

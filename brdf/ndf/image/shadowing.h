@@ -1,6 +1,6 @@
 #pragma once
 
-#include <gonio/brdf/ndf/disk_image.h>
+#include <gonio/brdf/ndf/image/disk_image.h>
 
 #include <vector>
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include <gonio/brdf/ndf/disk_image.h>
+#include <gonio/brdf/ndf/image/disk_image.h>
 
 namespace gonio {
 

@@ -1,10 +1,10 @@
-#include <gonio/brdf/ndf/shadowing.h>
+#include <gonio/brdf/ndf/image/shadowing.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include <gonio/mapping/base/parallel.h>
-#include <gonio/mapping/sphere/solid_angle.h>
+#include <gonio/brdf/ndf/image/solid_angle.h>
 
 namespace gonio {
 namespace {

@@ -1,4 +1,4 @@
-#include <gonio/brdf/exr/disk_image_file.h>
+#include <gonio/brdf/ndf/image/disk_image_file.h>
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>

@@ -1,4 +1,4 @@
-#include <gonio/brdf/ndf/disk_image.h>
+#include <gonio/brdf/ndf/image/disk_image.h>
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include <gonio/mapping/base/parallel.h>
 #include <gonio/mapping/base/error.h>
-#include <gonio/mapping/sphere/solid_angle.h>
+#include <gonio/brdf/ndf/image/solid_angle.h>
 
 namespace gonio {
 namespace {
