@@ -179,7 +179,7 @@ class BestLines {
           if (e < next[b]) next[b] = e, from_[lines * count + b] = a;
         }
       }
-      best.swap(next);
+      best = next;
       errors_.push_back(best[count - 1]);
     }
   }
