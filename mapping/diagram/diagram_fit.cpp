@@ -166,11 +166,9 @@ std::vector<double> strip_errors(const References& refs, bool radial) {
 class BestLines {
  public:
   BestLines(const std::vector<double>& error, std::size_t count, std::size_t most)
-      : count_(count), from_((most + 1) * count, 0) {
-    constexpr double infinite = std::numeric_limits<double>::infinity();
+      : count_(count), from_((most + 1) * count, 0), errors_(most + 1, infinite) {  // one line is no set
     std::vector<double> best(count, infinite), next(count);
     best[0] = 0;
-    errors_.assign(2, infinite);  // one line is no set
     for (std::size_t lines = 2; lines <= most; ++lines) {
       std::fill(next.begin(), next.end(), infinite);
       for (std::size_t b = lines - 1; b < count; ++b) {
@@ -179,8 +177,8 @@ class BestLines {
           if (e < next[b]) next[b] = e, from_[lines * count + b] = a;
         }
       }
-      best = next;
-      errors_.push_back(best[count - 1]);
+      best.swap(next);
+      errors_[lines] = best[count - 1];
     }
   }
 
@@ -194,6 +192,8 @@ class BestLines {
   }
 
  private:
+  static constexpr double infinite = std::numeric_limits<double>::infinity();
+
   std::size_t count_;
   std::vector<std::size_t> from_;
   std::vector<double> errors_;
