@@ -13,6 +13,7 @@
 #include <ImfTiledRgbaFile.h>
 #include <gonio/mapping/base/bytes.h>
 #include <gonio/brdf/exr/stack_file.h>
+#include <gonio/mapping/stack/packed_stack.h>
 #include <gonio/mapping/base/error.h>
 #include <gtest/gtest.h>
 #include <unistd.h>

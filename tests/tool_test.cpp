@@ -1,7 +1,7 @@
 // Runs the program GONIO_TOOL as a user does.
 
 #include <gonio/brdf/table/albedo.h>
-#include <gonio/brdf/build/stack/build_stack.h>
+#include <gonio/brdf/build/stack/bsdf_options.h>
 #include <gonio/mapping/base/bytes.h>
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/tests/table_files.h>
@@ -154,9 +154,9 @@ TEST_F(ToolTest, HelpHasExamples) {
     EXPECT_TRUE(contains(execute("--help").out, "\n  " + verb + " ")) << verb;
   }
   const std::string help = execute("convert --help").out;
-  const StackOptions defaults;
+  const BsdfOptions defaults;
   EXPECT_TRUE(contains(help, "--incident INT=" + std::to_string(defaults.incident))) << help;
-  EXPECT_TRUE(contains(help, "=" + std::to_string(defaults.bytes / 1024) + "KiB")) << help;
+  EXPECT_TRUE(contains(help, "=" + std::to_string(defaults.budget / 1024) + "KiB")) << help;
   EXPECT_TRUE(contains(
       help, "[" + std::to_string(defaults.meridians) + "x" + std::to_string(defaults.parallels)))
       << help;
@@ -660,7 +660,7 @@ TEST_F(ToolTest, StackSurvivesBitByBit) {
   };
   same(a.bsdf.diagrams, b.bsdf.diagrams);
   same(a.bsdf.diagrams, Stack<float>(a.bsdf.diagrams, Interpolation::displacement).grid());
-  EXPECT_EQ(a.colour.values(), b.colour.values());
+  EXPECT_EQ(a.bsdf.colour.values(), b.bsdf.colour.values());
 }
 
 TEST_F(ToolTest, StackToTableIsRefused) {
