@@ -24,8 +24,8 @@
 #include <gonio/brdf/value/luminance.h>
 #include <gonio/fitting/model/synth.h>
 #include <gonio/mapping/base/error.h>
-#include <gonio/tests/batch_subject.h>
-#include <gonio/tests/batch_targets.h>
+#include "tests/batch_subject.h"
+#include "tests/batch_targets.h"
 
 namespace gonio {
 namespace {
@@ -477,7 +477,7 @@ TEST(Bsdf, FPositiveMeansPdfPositive) {
 TEST(Bsdf, LambertIsPerfectAndSmall) {
   const auto table = constant_table(0.5f / pi<float>);
   const Bsdf bsdf = make_bsdf(table);
-  EXPECT_LT(bsdf.bytes(), 4096u);
+  EXPECT_LT(bsdf.bytes(), 6144u);  // the guide to incident angles takes 4096 of them
   const auto q = proof::measure(proof::subject_of(bsdf), 40 * degree);
   EXPECT_LT(q.relvar, 2e-3);
   EXPECT_NEAR(q.albedo.r, 0.5, 5e-4);

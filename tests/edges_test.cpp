@@ -20,7 +20,7 @@
 #include <gonio/fitting/model/model.h>
 #include <gonio/mapping/light/emission.h>
 #include <gonio/mapping/light/exr/light_exr.h>
-#include <gonio/tests/batch_subject.h>
+#include "tests/batch_subject.h"
 
 namespace gonio::proof {
 namespace {

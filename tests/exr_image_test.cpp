@@ -1,9 +1,9 @@
-#include <gonio/tools/render/image/exr_image.h>
+#include "tools/render/image/exr_image.h"
 
 #include <gonio/brdf/ndf/image/disk_image_file.h>
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/mapping/base/error.h>
-#include <gonio/tests/table_files.h>
+#include "tests/table_files.h"
 #include <gtest/gtest.h>
 
 namespace gonio {

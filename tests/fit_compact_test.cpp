@@ -3,7 +3,7 @@
 #include <gonio/brdf/proof/samplers/stack_bsdf.h>
 #include <gonio/fitting/model/synth.h>
 #include <gonio/mapping/base/error.h>
-#include <gonio/tests/table_files.h>
+#include "tests/table_files.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <gonio/brdf/table/table.h>
 #include <gonio/fitting/model/synth.h>
 #include <gonio/mapping/base/error.h>
-#include <gonio/tests/table_files.h>
+#include "tests/table_files.h"
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 

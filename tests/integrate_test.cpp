@@ -1,8 +1,8 @@
 // The adapters that docs/integrate.md shows, as the renderers would call them.
 
 #include <gonio/brdf/build/make_bsdf.h>
-#include <gonio/docs/examples/mitsuba_bsdf.h>
-#include <gonio/docs/examples/pbrt_bxdf.h>
+#include "docs/examples/mitsuba_bsdf.h"
+#include "docs/examples/pbrt_bxdf.h"
 #include <gonio/fitting/model/synth.h>
 #include <gtest/gtest.h>
 

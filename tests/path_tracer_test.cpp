@@ -1,9 +1,9 @@
 #include <gonio/brdf/build/make_bsdf.h>
-#include <gonio/tools/render/trace/path_tracer.h>
+#include "tools/render/trace/path_tracer.h"
 
 #include <gonio/fitting/model/synth.h>
-#include <gonio/tests/table_files.h>
-#include <gonio/tools/render/trace/film.h>
+#include "tests/table_files.h"
+#include "tools/render/trace/film.h"
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <gonio/brdf/build/budget/incidence_profile.h>
 #include <gonio/fitting/model/synth.h>
 #include <gonio/mapping/stack/packed_stack.h>
-#include <gonio/tests/table_files.h>
+#include "tests/table_files.h"
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 

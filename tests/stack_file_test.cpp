@@ -24,6 +24,7 @@
 #include <fstream>
 #include <limits>
 #include <random>
+#include <set>
 
 namespace gonio {
 namespace {
@@ -262,8 +263,8 @@ TEST_F(StackFileTest, AnyByteDamaged) {
       try {
         const StackFile file = load_stack(path("b.exr"));
         // Damage that is not seen must still leave something that can be sampled.
-        if (!file.bsdf.colour.empty() && file.bsdf.interpolation != Interpolation::mixture) {
-          EXPECT_NO_THROW(Bsdf(file.bsdf)) << at;
+        if (!file.bsdf.colour.empty()) {
+          EXPECT_NO_THROW(sampled_stack(file.bsdf)) << at;
         }
       } catch (const Error& error) {
         ++refused;
@@ -294,25 +295,37 @@ std::string not_finite(const Bsdf& bsdf) {
   return "";
 }
 
+/// All numbers that are sampled: the same for files that differ elsewhere.
+std::string content(const BsdfData& data) {
+  std::string all(to_string(data.diagrams.chart));
+  (all += to_string(data.interpolation)) += to_string(data.storage);
+  const auto add = [&all](const auto& values) {
+    all.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(values[0]));
+  };
+  add(data.diagrams.theta_i);
+  for (const DiagramGrid& d : data.diagrams.diagrams) add(d.phi), add(d.r), add(d.density);
+  add(data.colour.theta_i()), add(data.colour.values());
+  return all;
+}
+
 TEST_F(StackFileTest, WhatIsAcceptedIsFinite) {
   for (const StackFile& saved : {make_file(2, 2), make_packed_file()}) {
     save_stack(path("a.exr"), saved);
     const std::string bytes = read_bytes(path("a.exr"));
-    int accepted = 0;
+    std::set<std::string> accepted;  // a Bsdf draws for a while when it is made: one of each
     for (std::size_t at = 0; at < bytes.size(); ++at) {
       for (const int flip : {0x40, 0x7f, 0xff}) {
         std::string damaged = bytes;
         damaged[at] = static_cast<char>(damaged[at] ^ flip);
         write_bytes(path("b.exr"), damaged);
         try {
-          const Bsdf bsdf = load_bsdf(path("b.exr"));
-          ++accepted;
-          EXPECT_EQ(not_finite(bsdf), "") << "byte " << at << " with " << flip;
+          if (!accepted.insert(content(load_stack(path("b.exr")).bsdf)).second) continue;
+          EXPECT_EQ(not_finite(load_bsdf(path("b.exr"))), "") << "byte " << at << " with " << flip;
         } catch (const Error&) {  // refused: as good
         }
       }
     }
-    EXPECT_GT(accepted, 0);  // words, at least
+    EXPECT_GT(accepted.size(), 1u);  // words change nothing; numbers, at least, do
   }
 }
 

@@ -4,7 +4,7 @@
 #include <gonio/brdf/build/stack/bsdf_options.h>
 #include <gonio/mapping/base/bytes.h>
 #include <gonio/brdf/exr/stack_file.h>
-#include <gonio/tests/table_files.h>
+#include "tests/table_files.h"
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
