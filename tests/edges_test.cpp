@@ -139,7 +139,7 @@ TEST(SlowEdges, MeasuredLuminaires) {
   int sampled = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(std::filesystem::path(data) / "photometric")) {
     if (!entry.is_regular_file() || entry.path().filename() == "test_file_format_error.ies" || !is_light_file(entry.path())) continue;
-    Deviations ignored;
+    Problems ignored;
     // Draws on the very side of a plane without light are empty.
     EXPECT_LE(expect_emission_sound(entry.path().filename().string(), load_any_light(entry.path(), {}, ignored).diagram), 100u) << entry.path();
     ++sampled;
