@@ -1,8 +1,9 @@
 #include <gonio/brdf/build/compact/fit_compact.h>
+#include <gonio/brdf/bsdf/bsdf.h>
 #include <gonio/brdf/proof/measure.h>
-#include <gonio/brdf/proof/samplers/stack_bsdf.h>
 #include <gonio/fitting/model/synth.h>
 #include <gonio/mapping/base/error.h>
+#include <gonio/mapping/stack/packed_stack.h>
 #include "tests/support/table_files.h"
 
 #include <gtest/gtest.h>
