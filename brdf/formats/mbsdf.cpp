@@ -5,6 +5,7 @@
 #include <gonio/brdf/formats/repair.h>
 #include <gonio/mapping/base/atomic_file.h>
 #include <gonio/mapping/base/error.h>
+#include <gonio/mapping/numeric/pi.h>
 
 #include <cmath>
 #include <cstdint>
@@ -12,7 +13,6 @@
 namespace gonio {
 namespace {
 
-constexpr float pi = 3.14159265358979323846f;
 const std::string magic = "NVIDIA ARC MBSDF V1\n";
 
 struct Block {
@@ -74,8 +74,8 @@ bool parse_line(ByteReader& reader, std::string& line) {
 
 }  // namespace
 
-GridFile parse_mbsdf(const std::string& bytes, std::vector<Problem>& problems) {
-  GridFile file;
+MbsdfFile parse_mbsdf(const std::string& bytes, std::vector<Problem>& problems) {
+  MbsdfFile file;
   if (bytes.compare(0, magic.size(), magic) != 0) {
     problems.push_back({"magic", "something else", "\"NVIDIA ARC MBSDF V1\" and a line end", true});
     return file;
@@ -125,16 +125,16 @@ GridFile parse_mbsdf(const std::string& bytes, std::vector<Problem>& problems) {
   return file;
 }
 
-GridFile read_mbsdf(const std::filesystem::path& path) {
+MbsdfFile read_mbsdf(const std::filesystem::path& path) {
   std::vector<Problem> problems;
-  GridFile file = parse_mbsdf(read_bytes(path), problems);
+  MbsdfFile file = parse_mbsdf(read_bytes(path), problems);
   throw_if_fatal(path.string(), problems);
   return file;
 }
 
 namespace {
 
-void check_shape(const GridFile& file) {
+void check_shape(const MbsdfFile& file) {
   const auto side = [](int n) { return n >= 1 && n <= max_grid_side; };
   if (!side(file.n_theta_in) || !side(file.n_theta_out) || !side(file.n_phi) ||
       (file.channels != 1 && file.channels != 3)) {
@@ -153,7 +153,7 @@ void check_shape(const GridFile& file) {
 
 }  // namespace
 
-void write_mbsdf(const std::filesystem::path& path, const GridFile& file) {
+void write_mbsdf(const std::filesystem::path& path, const MbsdfFile& file) {
   check_shape(file);
   if (file.n_theta_in != file.n_theta_out) {
     throw Error(path.string() + ": n_theta: found " + std::to_string(file.n_theta_in) + " in and " +
@@ -170,7 +170,7 @@ void write_mbsdf(const std::filesystem::path& path, const GridFile& file) {
   });
 }
 
-GridTable::GridTable(const GridFile& file, const CellPolicies& policies)
+MbsdfTable::MbsdfTable(const MbsdfFile& file, const CellPolicies& policies)
     : n_theta_in_(file.n_theta_in), n_theta_out_(file.n_theta_out), n_phi_(file.n_phi), has_transmission_(file.has_transmission) {
   check_shape(file);
   const auto channels = static_cast<std::size_t>(file.channels);
@@ -191,11 +191,11 @@ GridTable::GridTable(const GridFile& file, const CellPolicies& policies)
   measured_ = MeasuredCells(cell_origins(kinds, policies), n_theta_out_, n_phi_);
 }
 
-struct GridTable::Place {
+struct MbsdfTable::Place {
   Lerp i, o, p;
 };
 
-GridTable::Place GridTable::place_of(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
+MbsdfTable::Place MbsdfTable::place_of(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
   const auto position = [](float angle, float range, int n) {
     return lerp_clamped(angle * (static_cast<float>(n) / range) - 0.5f, n);
   };
@@ -206,16 +206,16 @@ GridTable::Place GridTable::place_of(const glm::vec3& wi, const glm::vec3& wo) c
   const bool pole = wi.x == 0.0f && wi.y == 0.0f;
   const float ix = pole ? 1.0f : wi.x, iy = pole ? 0.0f : wi.y;
   const float phi = std::abs(fast_atan2(ix * wo.y - iy * wo.x, ix * wo.x + iy * wo.y));
-  return {position(theta(wi), pi / 2, n_theta_in_), position(theta(wo), pi / 2, n_theta_out_),
-          position(phi, pi, n_phi_)};
+  return {position(theta(wi), pi<float> / 2, n_theta_in_), position(theta(wo), pi<float> / 2, n_theta_out_),
+          position(phi, pi<float>, n_phi_)};
 }
 
-float GridTable::measured(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
+float MbsdfTable::measured(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
   const Place place = place_of(wi, wo);
   return measured_.share(place.i, place.o, place.p);
 }
 
-glm::vec3 GridTable::eval(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
+glm::vec3 MbsdfTable::eval(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
   const Place place = place_of(wi, wo);
   const Lerp &i = place.i, &o = place.o, &p = place.p;
   const auto row = [&](int in, int out) {

@@ -14,7 +14,7 @@ namespace gonio {
 /// A regular grid over theta_in, theta_out in [0, pi/2] and phi in [0, pi], phi relative to the
 /// azimuth of `wi` (specular at pi): the layout of NVIDIA's MBSDF files. Value (i, j, k) stands for
 /// the centre of its cell: theta_in = (i + 0.5) (pi/2) / n_theta_in, and so on.
-struct GridFile {
+struct MbsdfFile {
   int n_theta_in = 0, n_theta_out = 0, n_phi = 0;
   int channels = 3;               ///< 1 or 3 (RGB)
   std::vector<float> values;      ///< f_r in 1/sr, [theta_in][theta_out][phi][channel]
@@ -27,24 +27,24 @@ inline constexpr int max_grid_side = 1 << 14;
 
 /// Reads the reflection part of an MBSDF file, scalar or RGB. Transmission is skipped.
 /// @throws Error if the file cannot be read, is damaged, or holds no reflection.
-GridFile read_mbsdf(const std::filesystem::path& path);
+MbsdfFile read_mbsdf(const std::filesystem::path& path);
 
 /// The same from bytes in memory; adds to `problems` instead of throwing. The values are empty if a
 /// fatal problem was found.
-GridFile parse_mbsdf(const std::string& bytes, std::vector<Problem>& problems);
+MbsdfFile parse_mbsdf(const std::string& bytes, std::vector<Problem>& problems);
 
 /// Writes an MBSDF file with reflection alone, or leaves `path` untouched and throws Error. The
 /// format has one number of thetas: n_theta_in and n_theta_out must agree.
-void write_mbsdf(const std::filesystem::path& path, const GridFile& file);
+void write_mbsdf(const std::filesystem::path& path, const MbsdfFile& file);
 
 /// A grid ready for evaluation. `fill` takes the nearest valid cell along phi, else theta_out, else
 /// theta_in.
-class GridTable {
+class MbsdfTable {
  public:
   /// @throws Error if a size is < 1, the number of values does not fit, under CellPolicy::reject,
   /// or
   ///   if there is no valid cell.
-  explicit GridTable(const GridFile& file, const CellPolicies& policies = {});
+  explicit MbsdfTable(const MbsdfFile& file, const CellPolicies& policies = {});
 
   /// f_r in 1/sr, trilinear between cell centres, constant beyond the outermost ones, mirrored in
   /// phi. Needs both directions above the horizon.

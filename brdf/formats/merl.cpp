@@ -5,6 +5,7 @@
 #include <gonio/brdf/formats/repair.h>
 #include <gonio/mapping/base/atomic_file.h>
 #include <gonio/mapping/base/error.h>
+#include <gonio/mapping/numeric/pi.h>
 
 #include <cmath>
 #include <cstdint>
@@ -13,7 +14,6 @@
 namespace gonio {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 
 std::string dimensions_text(const std::int32_t (&n)[3]) {
   return std::to_string(n[0]) + " x " + std::to_string(n[1]) + " x " + std::to_string(n[2]);
@@ -124,10 +124,10 @@ MerlTable::MerlTable(const MerlFile& file, const CellPolicies& policies) : n_phi
   }
   std::size_t i = 0;
   for (int h = 0; h < MerlFile::n_theta_h; ++h) {
-    const double theta_h = pi / 2 * ((h + 0.5) / 90) * ((h + 0.5) / 90);
+    const double theta_h = pi<double> / 2 * ((h + 0.5) / 90) * ((h + 0.5) / 90);
     for (int d = 0; d < MerlFile::n_theta_d; ++d) {
       for (int p = 0; p < n_phi_d_; ++p, ++i) {
-        if (!above_horizon(theta_h, (d + 0.5) * pi / 180, (p + 0.5) * pi / 180)) {
+        if (!above_horizon(theta_h, (d + 0.5) * pi<double> / 180, (p + 0.5) * pi<double> / 180)) {
           kinds[i] = CellKind::outside;
         }
       }
@@ -145,9 +145,9 @@ struct MerlTable::Place {
 };
 
 MerlTable::Place MerlTable::place_of(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
-  constexpr float per_degree = static_cast<float>(180 / pi);
+  constexpr float per_degree = static_cast<float>(180 / pi<double>);
   const HalfDifference a = half_difference(wi, wo);
-  const Lerp h = lerp_clamped(90.0f * std::sqrt(a.theta_h * static_cast<float>(2 / pi)) - 0.5f, 90);
+  const Lerp h = lerp_clamped(90.0f * std::sqrt(a.theta_h * static_cast<float>(2 / pi<double>)) - 0.5f, 90);
   const Lerp d = lerp_clamped(a.theta_d * per_degree - 0.5f, 90);
   float phi_bin = a.phi_d * per_degree;
   if (phi_bin < 0.0f) phi_bin += static_cast<float>(n_phi_d_);

@@ -68,8 +68,8 @@ double lobe(const Crossing& at, double r, double phi, double width) {
   return std::exp(-(dx * dx + dy * dy) / (width * width));
 }
 
-GridFile table(const std::function<double(double theta_in, double theta_out, double phi)>& f) {
-  GridFile file;
+MbsdfFile table(const std::function<double(double theta_in, double theta_out, double phi)>& f) {
+  MbsdfFile file;
   file.n_theta_in = file.n_theta_out = 24;
   file.n_phi = 24;
   const auto centre = [](int k, double range) { return (k + 0.5) / 24 * range; };
@@ -158,7 +158,7 @@ std::vector<GalleryStack> gallery_stacks() {
 
 std::vector<GalleryTable> gallery_tables() {
   std::vector<GalleryTable> g;
-  const auto add = [&](const char* name, const char* reason, GridFile file, bool zero_regions = false) {
+  const auto add = [&](const char* name, const char* reason, MbsdfFile file, bool zero_regions = false) {
     g.push_back({name, reason, std::move(file), zero_regions});
   };
   add("lambert", "albedo exactly 0.5: every factor of pi, cosine and 2 shows", table([](double, double, double) { return 0.5 / pi<double>; }));
@@ -178,7 +178,7 @@ std::vector<GalleryTable> gallery_tables() {
       table([](double i, double o, double phi) { return 0.05 + 0.3 * (pi<double> / 2 - i) * o + 0.05 * std::cos(phi); }));
   Random random(3);
   add("noise", "white noise over three decades", table([&](double, double, double) { return std::pow(10.0, -3.0 * random()); }));
-  GridFile bad = table([](double, double o, double) { return 0.2 + 0.1 * o; });
+  MbsdfFile bad = table([](double, double o, double) { return 0.2 + 0.1 * o; });
   for (std::size_t k = 0; k < bad.values.size(); ++k) {
     if (k % 97 == 0) bad.values[k] = -0.1f;
     if (k % 101 == 0) bad.values[k] = std::numeric_limits<float>::quiet_NaN();
@@ -189,7 +189,7 @@ std::vector<GalleryTable> gallery_tables() {
 }
 
 BrdfTable to_table(const GalleryTable& entry) {
-  return BrdfTable(GridTable(entry.file), {entry.name, entry.name, "mbsdf", entry.reason, entry.file.values.size() * sizeof(float), {}});
+  return BrdfTable(MbsdfTable(entry.file), {entry.name, entry.name, "mbsdf", entry.reason, entry.file.values.size() * sizeof(float), {}});
 }
 
 }  // namespace gonio::proof

@@ -33,7 +33,7 @@ bool shared_lines(const StackGrid& grid);
 struct GalleryTable {
   std::string name;
   std::string reason;
-  GridFile file;
+  MbsdfFile file;
   bool zero_regions = false;  ///< as in GalleryStack
 };
 

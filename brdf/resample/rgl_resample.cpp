@@ -3,6 +3,7 @@
 #include <gonio/brdf/resample/rgl_resample.h>
 #include <gonio/brdf/table/table.h>
 #include <gonio/mapping/base/error.h>
+#include <gonio/mapping/numeric/pi.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,13 +14,12 @@
 namespace gonio {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr int radial_nodes = 256;           // of ndf and sigma
 constexpr double ndf_floor = 0.01;          // share of a Lambertian's normals
 constexpr double cosine_floor = 1e-3;       // share of a cosine lobe in both densities
-constexpr double last_incident = 89 * pi / 180;
+constexpr double last_incident = 89 * pi<double> / 180;
 constexpr std::size_t first_incident = 24;  // every four degrees and the last
-constexpr double least_interval = 0.1 * pi / 180;
+constexpr double least_interval = 0.1 * pi<double> / 180;
 constexpr double mass_tolerance = 0.0005;   // of the pdf below the horizon, between incident angles
 constexpr int samples_per_cell = 3;         // along each side
 
@@ -27,12 +27,12 @@ constexpr int samples_per_cell = 3;         // along each side
 // it reflects.
 struct Reflection {
   Reflection(const glm::dvec3& wi, double u_theta, double u_phi) {
-    const double theta = pi / 2 * u_theta * u_theta, phi = (2 * u_phi - 1) * pi;
+    const double theta = pi<double> / 2 * u_theta * u_theta, phi = (2 * u_phi - 1) * pi<double>;
     const glm::dvec3 m(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
                        std::cos(theta));
     cosine = glm::dot(wi, m);
     wo = 2.0 * cosine * m - wi;
-    jacobian = 4 * cosine * 2 * pi * pi * u_theta * std::sin(theta);
+    jacobian = 4 * cosine * 2 * pi<double> * pi<double> * u_theta * std::sin(theta);
   }
   bool above() const { return cosine > 0 && wo.z > 0; }
 
@@ -69,8 +69,8 @@ class Resampler {
     for (int row = 0; row < 2; ++row) {
       for (int k = 0; k < radial_nodes; ++k) {
         const double u = k / (radial_nodes - 1.0);
-        head_.ndf.values.push_back(static_cast<float>(ndf.eval(pi / 2 * u * u)));
-        head_.sigma.values.push_back(static_cast<float>(ndf.sigma(pi / 2 * u * u)));
+        head_.ndf.values.push_back(static_cast<float>(ndf.eval(pi<double> / 2 * u * u)));
+        head_.sigma.values.push_back(static_cast<float>(ndf.sigma(pi<double> / 2 * u * u)));
       }
     }
   }
@@ -134,12 +134,12 @@ class Resampler {
       return static_cast<double>(luminance(f_r_(k, k)));
     };
     double largest = 0;
-    for (int degrees = 0; degrees < 89; ++degrees) largest = std::max(largest, retro(degrees * pi / 180));
+    for (int degrees = 0; degrees < 89; ++degrees) largest = std::max(largest, retro(degrees * pi<double> / 180));
     // Without retro-reflection the choice is free.
-    if (!(largest > 0)) return RadialNdf(radial_nodes, [](double) { return 1 / pi; });
+    if (!(largest > 0)) return RadialNdf(radial_nodes, [](double) { return 1 / pi<double>; });
     const RadialNdf found = extract_ndf(retro, Masking::full, radial_nodes).ndf;
     return RadialNdf(radial_nodes, [&](double theta) {
-      return (1 - ndf_floor) * found.eval(theta) + ndf_floor / pi;
+      return (1 - ndf_floor) * found.eval(theta) + ndf_floor / pi<double>;
     });
   }
 
@@ -177,7 +177,7 @@ class Resampler {
   void fill(Slice& slice, const Warp2d& warp) const {
     const glm::vec3 wi = incident(slice.theta_i);
     const int side = size_.side;
-    const double area = 4 * lerp_row(head_.sigma, std::sqrt(slice.theta_i * 2 / pi));
+    const double area = 4 * lerp_row(head_.sigma, std::sqrt(slice.theta_i * 2 / pi<double>));
     const auto place = [&](double x, double y) {
       constexpr float below_1 = 0.99999994f;
       return warp.sample({0, 0, 0.0f}, std::min(static_cast<float>(x), below_1),
@@ -279,7 +279,7 @@ RglFile resample_as_rgl(const Reflectance& f_r, std::string description, const R
   std::vector<std::unique_ptr<Slice>> slices(first_incident);
   parallel_for(slices.size(), [&](std::size_t k) {
     slices[k] = std::make_unique<Slice>(
-        resampler.slice(std::min(static_cast<double>(k) * pi / 45, last_incident)));
+        resampler.slice(std::min(static_cast<double>(k) * pi<double> / 45, last_incident)));
   });
   // Halves the intervals whose middle gains most from a slice of its own, half of the best gain and
   // above at a time. What did not gain enough is not asked again.

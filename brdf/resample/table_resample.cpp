@@ -1,6 +1,7 @@
 #include <gonio/mapping/base/parallel.h>
 #include <gonio/brdf/resample/table_resample.h>
 #include <gonio/mapping/base/error.h>
+#include <gonio/mapping/numeric/pi.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +10,6 @@
 namespace gonio {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 
 // Samples at the cell centres of MERL; negative where a direction is at or below the horizon.
 std::vector<glm::vec3> merl_centres(const BrdfTable& table, const MerlFile& file) {
@@ -19,10 +19,10 @@ std::vector<glm::vec3> merl_centres(const BrdfTable& table, const MerlFile& file
   parallel_for(MerlFile::n_theta_h, [&](std::size_t i) {
     const double s = (static_cast<double>(i) + 0.5) / MerlFile::n_theta_h;
     for (std::size_t k = 0; k < row; ++k) {
-      const double theta_d = (static_cast<double>(k / n_phi) + 0.5) * pi / 180;
-      const double phi_d = (static_cast<double>(k % n_phi) + 0.5) * pi / 180;
+      const double theta_d = (static_cast<double>(k / n_phi) + 0.5) * pi<double> / 180;
+      const double phi_d = (static_cast<double>(k % n_phi) + 0.5) * pi<double> / 180;
       glm::vec3 wi, wo;
-      directions_from_half_difference(pi / 2 * s * s, theta_d, phi_d, wi, wo);
+      directions_from_half_difference(pi<double> / 2 * s * s, theta_d, phi_d, wi, wo);
       const bool above = wi.z > 0.0f && wo.z > 0.0f;
       glm::vec3 value = table.eval(wi, wo);
       if (file.n_phi_d == 180) value = 0.5f * (value + table.eval(wo, wi));
@@ -76,24 +76,24 @@ MerlFile sample_as_merl(const BrdfTable& table, int n_phi_d) {
   return file;
 }
 
-GridFile sample_as_grid(const BrdfTable& table, int n_theta, int n_phi) {
+MbsdfFile sample_as_mbsdf(const BrdfTable& table, int n_theta, int n_phi) {
   if (n_theta < 1 || n_phi < 1 || n_theta > max_grid_side || n_phi > max_grid_side) {
     throw Error("grid: found " + std::to_string(n_theta) + " thetas and " + std::to_string(n_phi) +
                 " phis, expected 1 to " + std::to_string(max_grid_side));
   }
-  GridFile file;
+  MbsdfFile file;
   file.n_theta_in = file.n_theta_out = n_theta;
   file.n_phi = n_phi;
   const auto row = static_cast<std::size_t>(n_theta) * n_phi;
   file.values.resize(static_cast<std::size_t>(n_theta) * row * 3);
   parallel_for(static_cast<std::size_t>(n_theta), [&](std::size_t in) {
-    const double theta_i = (static_cast<double>(in) + 0.5) * pi / 2 / n_theta;
+    const double theta_i = (static_cast<double>(in) + 0.5) * pi<double> / 2 / n_theta;
     const glm::vec3 wi(glm::dvec3(std::sin(theta_i), 0.0, std::cos(theta_i)));
     float* value = &file.values[in * row * 3];
     for (int out = 0; out < n_theta; ++out) {
-      const double theta_o = (out + 0.5) * pi / 2 / n_theta;
+      const double theta_o = (out + 0.5) * pi<double> / 2 / n_theta;
       for (int p = 0; p < n_phi; ++p) {
-        const double phi = (p + 0.5) * pi / n_phi;
+        const double phi = (p + 0.5) * pi<double> / n_phi;
         const glm::vec3 wo(glm::dvec3(std::sin(theta_o) * std::cos(phi),
                                       std::sin(theta_o) * std::sin(phi), std::cos(theta_o)));
         const glm::vec3 f_r = table.eval(wi, wo);
@@ -110,7 +110,7 @@ void write_table_as_merl(const BrdfTable& table, const std::filesystem::path& pa
 
 void write_table_as_mbsdf(const BrdfTable& table, const std::filesystem::path& path, int n_theta,
                           int n_phi) {
-  write_mbsdf(path, sample_as_grid(table, n_theta, n_phi));
+  write_mbsdf(path, sample_as_mbsdf(table, n_theta, n_phi));
 }
 
 }  // namespace gonio

@@ -21,13 +21,13 @@ MerlFile sample_as_merl(const BrdfTable& table, int n_phi_d = 360);
 
 /// Any table on the grid of MBSDF, sampled at the cell centres with wo on the side phi >= 0. Uses
 /// all cores. @throws Error if a size is not in 1 to 16384.
-GridFile sample_as_grid(const BrdfTable& table, int n_theta, int n_phi);
+MbsdfFile sample_as_mbsdf(const BrdfTable& table, int n_theta, int n_phi);
 
 /// sample_as_merl and write_merl.
 void write_table_as_merl(const BrdfTable& table, const std::filesystem::path& path,
                          int n_phi_d = 360);
 
-/// sample_as_grid and write_mbsdf.
+/// sample_as_mbsdf and write_mbsdf.
 void write_table_as_mbsdf(const BrdfTable& table, const std::filesystem::path& path,
                           int n_theta = 90, int n_phi = 180);
 

@@ -27,8 +27,8 @@ BrdfTable load(const std::filesystem::path& path, const CellPolicies& policies) 
       return finish(RglTable(std::move(file), policies), "rgl", std::move(description));
     }
     case TableFormat::mbsdf: {
-      const GridFile file = read_mbsdf(path);
-      return finish(GridTable(file, policies), "mbsdf", file.description);
+      const MbsdfFile file = read_mbsdf(path);
+      return finish(MbsdfTable(file, policies), "mbsdf", file.description);
     }
     case TableFormat::unknown:
       break;

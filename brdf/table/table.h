@@ -23,7 +23,7 @@ namespace gonio {
 /// Thread safety: immutable after construction; every const member may be called concurrently.
 class BrdfTable {
  public:
-  using Data = std::variant<MerlTable, RglTable, GridTable>;
+  using Data = std::variant<MerlTable, RglTable, MbsdfTable>;
 
   struct Info {
     std::string name;           ///< file name without folder and extension

@@ -65,14 +65,14 @@ MerlFile synthesize_merl(const LobeModel& model, const SynthOptions& options) {
   return file;
 }
 
-GridFile synthesize_grid(const LobeModel& model, int n_theta, int n_phi,
+MbsdfFile synthesize_mbsdf(const LobeModel& model, int n_theta, int n_phi,
                          const SynthOptions& options) {
   if (n_theta < 2 || n_phi < 2) {
     throw Error("synthetic grid: size is " + std::to_string(n_theta) + " x " +
                 std::to_string(n_theta) + " x " + std::to_string(n_phi) +
                 "; expected at least 2 in each direction");
   }
-  GridFile file;
+  MbsdfFile file;
   file.n_theta_in = file.n_theta_out = n_theta;
   file.n_phi = n_phi;
   file.values.reserve(std::size_t{3} * n_theta * n_theta * n_phi);

@@ -5,11 +5,9 @@
 #include <limits>
 
 #include <gonio/mapping/numeric/fast_math.h>
+#include <gonio/mapping/numeric/pi.h>
 
 namespace gonio {
-
-template <class T>
-inline constexpr T pi = static_cast<T>(3.141592653589793238462643383279502884L);
 
 /// A point of the unit square; both coordinates in [0, 1].
 template <class T>

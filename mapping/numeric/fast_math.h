@@ -10,6 +10,8 @@
 // computed, and a mispredicted branch also ends the overlap of one look-up with the next. For other types, the
 // standard library's.
 
+#include <gonio/mapping/numeric/pi.h>
+
 namespace gonio {
 
 /// c ? a : b as arithmetic on bits: compilers turn that into a branch.
@@ -29,7 +31,6 @@ T select(bool c, T a, T b) noexcept {
 ///
 /// Odd polynomial through atan(a)/a at 9 Chebyshev nodes of a^2 in [0, 1]: its own relative error is 1.8e-8.
 inline float fast_atan2(float y, float x) noexcept {
-  constexpr float pi = 3.14159265358979323846f;
   const float ax = std::abs(x), ay = std::abs(y);
   const float larger = std::max(std::max(ax, ay), std::numeric_limits<float>::min());
   const float a = std::min(ax, ay) / larger;
@@ -37,8 +38,8 @@ inline float fast_atan2(float y, float x) noexcept {
   const float p01 = -3.333303671e-1f + 1.999187203e-1f * z, p23 = -1.419779779e-1f + 1.061837064e-1f * z;
   const float p45 = -7.456854825e-2f + 4.213762358e-2f * z, p67 = -1.573124912e-2f + 2.766283500e-3f * z;
   float p = a + a * z * ((p01 + z2 * p23) + z4 * (p45 + z2 * p67));  // the constant term is 1 to 2e-8
-  p = select(ay > ax, 0.5f * pi - p, p);
-  p = select(x < 0.0f, pi - p, p);
+  p = select(ay > ax, 0.5f * pi<float> - p, p);
+  p = select(x < 0.0f, pi<float> - p, p);
   return std::copysign(p, y);
 }
 template <class T>

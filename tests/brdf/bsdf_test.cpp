@@ -339,7 +339,7 @@ TEST(StackBsdf, SubjectsDirectionIsThatOfTheSample) {
 
 // A glossy lobe about the mirror direction over a coloured floor, as a grid.
 BrdfTable make_table(const std::function<glm::vec3(double theta_i, double theta_o, double phi)>& f, int n_theta = 45, int n_phi = 45) {
-  GridFile file;
+  MbsdfFile file;
   file.n_theta_in = file.n_theta_out = n_theta;
   file.n_phi = n_phi;
   for (int i = 0; i < n_theta; ++i)
@@ -348,7 +348,7 @@ BrdfTable make_table(const std::function<glm::vec3(double theta_i, double theta_
         const glm::vec3 v = f((i + 0.5) * pi<double> / 2 / n_theta, (o + 0.5) * pi<double> / 2 / n_theta, (p + 0.5) * pi<double> / n_phi);
         file.values.insert(file.values.end(), {v.r, v.g, v.b});
       }
-  return BrdfTable(GridTable(file), {"made", "made", "mbsdf", "", file.values.size() * 4, {}});
+  return BrdfTable(MbsdfTable(file), {"made", "made", "mbsdf", "", file.values.size() * 4, {}});
 }
 
 std::shared_ptr<const BrdfTable> constant_table(float value) {
@@ -541,7 +541,7 @@ TEST(Bsdf, RealMaterials) {
 // ---------------------------------------------------------------- albedo and roughness
 
 std::shared_ptr<const BrdfTable> synthetic(const char* description) {
-  return std::make_shared<const BrdfTable>(GridTable(synthesize_grid(parse_model(description), 32, 48)), BrdfTable::Info{});
+  return std::make_shared<const BrdfTable>(MbsdfTable(synthesize_mbsdf(parse_model(description), 32, 48)), BrdfTable::Info{});
 }
 
 Bsdf bsdf_of(const char* description) {

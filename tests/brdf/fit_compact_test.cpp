@@ -18,9 +18,9 @@ namespace {
 constexpr double degree = pi<double> / 180;
 
 std::shared_ptr<const BrdfTable> synthetic(const std::string& model, int thetas = 30, int phis = 36) {
-  GridFile file = synthesize_grid(parse_model(model), thetas, phis);
+  MbsdfFile file = synthesize_mbsdf(parse_model(model), thetas, phis);
   const std::size_t bytes = file.values.size() * sizeof(float);
-  return std::make_shared<const BrdfTable>(BrdfTable(GridTable(file), {"made", "made", "mbsdf", "", bytes, {}}));
+  return std::make_shared<const BrdfTable>(BrdfTable(MbsdfTable(file), {"made", "made", "mbsdf", "", bytes, {}}));
 }
 
 std::shared_ptr<const BrdfTable> glossy() {

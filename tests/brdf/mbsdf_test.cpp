@@ -13,8 +13,8 @@ using namespace test;
 using ::testing::HasSubstr;
 
 // f_r = 100 theta_in + 10 theta_out + phi, in indices; green and blue add 0.1 and 0.2.
-GridFile make_grid(int n_in, int n_out, int n_phi, int channels = 3) {
-  GridFile file{n_in, n_out, n_phi, channels, {}, "", false};
+MbsdfFile make_grid(int n_in, int n_out, int n_phi, int channels = 3) {
+  MbsdfFile file{n_in, n_out, n_phi, channels, {}, "", false};
   for (int i = 0; i < n_in; ++i) {
     for (int o = 0; o < n_out; ++o) {
       for (int p = 0; p < n_phi; ++p) {
@@ -28,8 +28,8 @@ GridFile make_grid(int n_in, int n_out, int n_phi, int channels = 3) {
   return file;
 }
 
-GridFile parse(const std::string& bytes, std::vector<Problem>& problems) {
-  GridFile file = parse_mbsdf(bytes, problems);
+MbsdfFile parse(const std::string& bytes, std::vector<Problem>& problems) {
+  MbsdfFile file = parse_mbsdf(bytes, problems);
   throw_if_fatal("test", problems);
   return file;
 }
@@ -45,7 +45,7 @@ std::string message(const std::string& bytes) {
 }
 
 TEST(Grid, HoldsItsValuesAtCellCentres) {
-  const GridTable table(make_grid(3, 5, 4));
+  const MbsdfTable table(make_grid(3, 5, 4));
   for (int i = 0; i < 3; ++i) {
     for (int o = 0; o < 5; ++o) {
       for (int p = 0; p < 4; ++p) {
@@ -64,7 +64,7 @@ TEST(Grid, HoldsItsValuesAtCellCentres) {
 }
 
 TEST(Grid, LinearBetweenCentresAndConstantBeyond) {
-  const GridTable table(make_grid(3, 3, 4));
+  const MbsdfTable table(make_grid(3, 3, 4));
   const double step = pi / 6;
   const auto at = [&](double in, double out, double phi) {
     return table.eval(direction(in * step, 0.0), direction(out * step, phi * pi / 4)).r;
@@ -79,7 +79,7 @@ TEST(Grid, LinearBetweenCentresAndConstantBeyond) {
 
 // All of the hemisphere would get the column of phi = 0 otherwise.
 TEST(Grid, AtTheNormalAzimuthsAreThoseFromX) {
-  const GridTable table(make_grid(3, 3, 4));
+  const MbsdfTable table(make_grid(3, 3, 4));
   EXPECT_TRUE(std::isfinite(table.eval({0, 0, 1}, {0, 0, 1}).r));
   for (const double phi : {0.0, 1.0, 2.0, 3.0})
     EXPECT_NEAR(table.eval({0, 0, 1}, direction(1.0, phi)).r, table.eval(direction(1e-5, 0.0), direction(1.0, phi)).r, 1e-4) << phi;
@@ -87,23 +87,23 @@ TEST(Grid, AtTheNormalAzimuthsAreThoseFromX) {
 }
 
 TEST(Grid, ScalarAndSingleCell) {
-  const GridTable scalar(make_grid(2, 2, 2, 1));
+  const MbsdfTable scalar(make_grid(2, 2, 2, 1));
   const glm::vec3 f_r = scalar.eval(direction(0.3, 0.0), direction(0.9, 1.0));
   EXPECT_EQ(f_r.r, f_r.g);
   EXPECT_EQ(f_r.r, f_r.b);
-  const GridTable one(GridFile{1, 1, 1, 1, {0.25f}, "", false});
+  const MbsdfTable one(MbsdfFile{1, 1, 1, 1, {0.25f}, "", false});
   EXPECT_EQ(one.eval(direction(0.3, 0.0), direction(0.9, 1.0)).g, 0.25f);
 }
 
 TEST(Grid, BadCells) {
-  GridFile file = make_grid(2, 2, 3);
+  MbsdfFile file = make_grid(2, 2, 3);
   file.values[0] = -1.0f;          // cell (0,0,0), red alone
   file.values[4] = std::nanf("");  // cell (0,0,1)
-  const GridTable table(file);
+  const MbsdfTable table(file);
   EXPECT_EQ(table.cells().negative, 1u);
   EXPECT_EQ(table.cells().nonfinite, 1u);
   EXPECT_EQ(table.cells().total, 12u);
-  const auto at = [&](const GridTable& t, int p) {
+  const auto at = [&](const MbsdfTable& t, int p) {
     return t.eval(direction(pi / 8, 0.0), direction(pi / 8, (p + 0.5) * pi / 3));
   };
   EXPECT_NEAR(at(table, 0).r, 0.0f, 1e-5);
@@ -111,14 +111,14 @@ TEST(Grid, BadCells) {
   EXPECT_NEAR(at(table, 1).g, 0.1f, 1e-4) << "filled from the lower neighbour";
   CellPolicies policies;
   policies.negative = CellPolicy::reject;
-  EXPECT_THROW(GridTable(file, policies), Error);
+  EXPECT_THROW(MbsdfTable(file, policies), Error);
 }
 
 TEST(Grid, WrongShapesAreRefused) {
-  EXPECT_THROW(GridTable(GridFile{0, 1, 1, 1, {}, "", false}), Error);
-  EXPECT_THROW(GridTable(GridFile{1, 1, 1, 2, {0, 0}, "", false}), Error);
-  EXPECT_THROW(GridTable(GridFile{2, 1, 1, 1, {0}, "", false}), Error);
-  EXPECT_THROW(GridTable(GridFile{1 << 30, 1 << 30, 1 << 30, 3, {0}, "", false}), Error);
+  EXPECT_THROW(MbsdfTable(MbsdfFile{0, 1, 1, 1, {}, "", false}), Error);
+  EXPECT_THROW(MbsdfTable(MbsdfFile{1, 1, 1, 2, {0, 0}, "", false}), Error);
+  EXPECT_THROW(MbsdfTable(MbsdfFile{2, 1, 1, 1, {0}, "", false}), Error);
+  EXPECT_THROW(MbsdfTable(MbsdfFile{1 << 30, 1 << 30, 1 << 30, 3, {0}, "", false}), Error);
   const TemporaryFolder folder;
   EXPECT_THROW(write_mbsdf(folder / "x", make_grid(2, 3, 1)), Error);
   EXPECT_FALSE(std::filesystem::exists(folder / "x"));
@@ -127,9 +127,9 @@ TEST(Grid, WrongShapesAreRefused) {
 TEST(Grid, RoundTrip) {
   const TemporaryFolder folder;
   for (const int channels : {1, 3}) {
-    const GridFile file = make_grid(4, 4, 6, channels);
+    const MbsdfFile file = make_grid(4, 4, 6, channels);
     write_mbsdf(folder / "x", file);
-    const GridFile back = read_mbsdf(folder / "x");
+    const MbsdfFile back = read_mbsdf(folder / "x");
     EXPECT_EQ(back.n_theta_in, 4);
     EXPECT_EQ(back.n_theta_out, 4);
     EXPECT_EQ(back.n_phi, 6);
@@ -143,7 +143,7 @@ TEST(Grid, PartsOfAFile) {
   const std::string both =
       make_mbsdf(0, 2, 3, a, "MBSDF_DATA_TRANSMISSION=\n") + make_mbsdf(0, 2, 3, b).substr(20);
   std::vector<Problem> problems;
-  const GridFile file = parse(both, problems);
+  const MbsdfFile file = parse(both, problems);
   EXPECT_EQ(file.values, b);
   EXPECT_TRUE(file.has_transmission);
   ASSERT_EQ(problems.size(), 1u);
@@ -172,10 +172,10 @@ TEST(Grid, MeasuredFiles) {
   if (test_data().empty()) GTEST_SKIP() << "GONIO_TEST_DATA is not set";
   const std::filesystem::path folder = test_data() / "mbsdf";
   for (const char* name : {"carpaint_blue.mbsdf", "carpaint_red.mbsdf"}) {
-    const GridFile file = read_mbsdf(folder / name);
+    const MbsdfFile file = read_mbsdf(folder / name);
     EXPECT_EQ(file.n_theta_in, 45);
     EXPECT_EQ(file.n_phi, 90);
-    EXPECT_GT(GridTable(file).cells().negative, 0u);
+    EXPECT_GT(MbsdfTable(file).cells().negative, 0u);
   }
   EXPECT_EQ(read_mbsdf(folder / "test_reflection_scalar_theta_2_phi_3.mbsdf").channels, 1);
   EXPECT_EQ(read_mbsdf(folder / "test_rgb_theta_2_phi_3.mbsdf").channels, 3);

@@ -13,7 +13,7 @@ using namespace test;
 float radians(double degrees) { return static_cast<float>(degrees * pi / 180); }
 
 TEST(Write, LambertianStaysWhatItWas) {
-  const BrdfTable table(GridTable(GridFile{1, 1, 1, 3, {0.1f, 0.2f, 0.3f}, "", false}), {});
+  const BrdfTable table(MbsdfTable(MbsdfFile{1, 1, 1, 3, {0.1f, 0.2f, 0.3f}, "", false}), {});
   for (const int n_phi_d : {180, 360}) {
     const MerlFile merl = sample_as_merl(table, n_phi_d);
     const MerlTable read(merl, {});
@@ -22,10 +22,10 @@ TEST(Write, LambertianStaysWhatItWas) {
       EXPECT_NEAR(read.eval(direction(0.5, 0), direction(1.2, 2))[c], 0.1 * (c + 1), 1e-6);
     }
   }
-  const GridTable grid(sample_as_grid(table, 5, 6));
+  const MbsdfTable grid(sample_as_mbsdf(table, 5, 6));
   EXPECT_NEAR(grid.eval(direction(0.5, 0), direction(1.2, 2)).b, 0.3, 1e-6);
   EXPECT_THROW(sample_as_merl(table, 90), Error);
-  EXPECT_THROW(sample_as_grid(table, 0, 3), Error);
+  EXPECT_THROW(sample_as_mbsdf(table, 0, 3), Error);
 }
 
 TEST(Write, MerlOfMerlIsTheSame) {
@@ -44,7 +44,7 @@ TEST(Write, MerlOfMerlIsTheSame) {
 
 // f_r depends on theta_in alone: not reciprocal.
 TEST(Write, ReciprocalLayoutAverages) {
-  const BrdfTable table(GridTable(GridFile{2, 1, 1, 1, {0.0f, 1.0f}, "", false}), {});
+  const BrdfTable table(MbsdfTable(MbsdfFile{2, 1, 1, 1, {0.0f, 1.0f}, "", false}), {});
   const BrdfTable half(MerlTable(sample_as_merl(table, 180), {}), {});
   const BrdfTable full(MerlTable(sample_as_merl(table, 360), {}), {});
   const glm::vec3 low = direction(1.4, 0.0), high = direction(0.2, 1.0);
@@ -55,10 +55,10 @@ TEST(Write, ReciprocalLayoutAverages) {
 }
 
 TEST(Write, GridKeepsItsCells) {
-  GridFile file{3, 3, 4, 3, {}, "", false};
+  MbsdfFile file{3, 3, 4, 3, {}, "", false};
   for (int i = 0; i < 108; ++i) file.values.push_back(static_cast<float>(i));
-  const BrdfTable table{GridTable(file), {}};
-  const GridFile again = sample_as_grid(table, 3, 4);
+  const BrdfTable table{MbsdfTable(file), {}};
+  const MbsdfFile again = sample_as_mbsdf(table, 3, 4);
   ASSERT_EQ(again.values.size(), file.values.size());
   for (std::size_t i = 0; i < file.values.size(); ++i) {
     EXPECT_NEAR(again.values[i], file.values[i], 1e-3);
@@ -83,7 +83,7 @@ TEST(Write, MeasuredAlbedosSurviveMerl) {
 
 TEST(Write, NothingIsLeftAfterAFailure) {
   const TemporaryFolder folder;
-  const BrdfTable table(GridTable(GridFile{1, 1, 1, 1, {0.1f}, "", false}), {});
+  const BrdfTable table(MbsdfTable(MbsdfFile{1, 1, 1, 1, {0.1f}, "", false}), {});
   EXPECT_THROW(write_table_as_mbsdf(table, folder.path() / "no" / "x.mbsdf", 2, 2), Error);
   write_file(folder / "old", "old");
   MerlFile bad;

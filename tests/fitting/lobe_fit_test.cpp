@@ -168,7 +168,7 @@ TEST(Fit, RecoversGgxFromAGrid) {
   for (const auto& [alpha, tolerance] : {std::pair{0.03, 0.03}, {0.1, 0.005}, {1.0, 0.001}})
     for (const double f0 : {0.02, 1.0}) {
       const LobeModel truth = parse_model("ggx:alpha=" + std::to_string(alpha) + ",F0=" + std::to_string(f0));
-      const GridTable table(synthesize_grid(truth));
+      const MbsdfTable table(synthesize_mbsdf(truth));
       const Lobe found = fit([&](const glm::vec3& wi, const glm::vec3& wo) { return table.eval(wi, wo); }, truth).model.lobes[0];
       EXPECT_NEAR(found.shape[0].r / alpha, 1, tolerance) << f0;
       EXPECT_NEAR(found.color[0].r / f0, 1, tolerance) << alpha;
@@ -316,21 +316,21 @@ TEST(Fit, LooksAtMeasuredCellsAlone) {
     expect_found(BrdfTable(MerlTable(synthesize_merl(truth, options), {}), {}), "MERL");
     for (const CellPolicy policy : {CellPolicy::fill, CellPolicy::zero}) {
       const CellPolicies policies{CellPolicy::zero, policy, policy};
-      expect_found(BrdfTable(GridTable(synthesize_grid(truth, 90, 180, options), policies), {}), "MBSDF");
+      expect_found(BrdfTable(MbsdfTable(synthesize_mbsdf(truth, 90, 180, options), policies), {}), "MBSDF");
     }
   }
-  GridFile holes = synthesize_grid(truth, 90, 180);
+  MbsdfFile holes = synthesize_mbsdf(truth, 90, 180);
   std::mt19937 random(1);
   for (std::size_t k = 0; k < holes.values.size(); k += 3)
     if (random() % 8 == 0) holes.values[k] = std::numeric_limits<float>::infinity();
-  expect_found(BrdfTable(GridTable(holes), {}), "holes");
+  expect_found(BrdfTable(MbsdfTable(holes), {}), "holes");
 
   SynthOptions nothing;
   nothing.measured_to = 1e-9;
-  GridFile one = synthesize_grid(truth, 10, 10, nothing);
+  MbsdfFile one = synthesize_mbsdf(truth, 10, 10, nothing);
   for (int c = 0; c < 3; ++c) one.values[c] = 0.1f;
   try {
-    fit(measured_part(BrdfTable(GridTable(one), {})), truth);
+    fit(measured_part(BrdfTable(MbsdfTable(one), {})), truth);
     ADD_FAILURE() << "one cell was enough";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("no pair of directions within 75 degrees"), std::string::npos) << error.what();

@@ -92,7 +92,7 @@ TEST(LobeInvariants, HoldForLobeSampler) {
   const LobeModel model =
       parse_model("lambert:albedo=0.3/0.2/0.1+ggx:alpha=0.4,F0=0.05+ggx:alpha=0.12,F0=0.1");
   const auto table =
-      std::make_shared<const BrdfTable>(GridTable(synthesize_grid(model)), BrdfTable::Info{});
+      std::make_shared<const BrdfTable>(MbsdfTable(synthesize_mbsdf(model)), BrdfTable::Info{});
   for (const Adaption adaption : {Adaption::albedo, Adaption::weights, Adaption::shapes}) {
     LobeSamplerOptions with;
     with.adaption = adaption;

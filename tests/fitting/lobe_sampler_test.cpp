@@ -26,7 +26,7 @@ const LobeModel& paint() {
 
 std::shared_ptr<const BrdfTable> table() {
   static const auto shared =
-      std::make_shared<const BrdfTable>(GridTable(synthesize_grid(paint())), BrdfTable::Info{});
+      std::make_shared<const BrdfTable>(MbsdfTable(synthesize_mbsdf(paint())), BrdfTable::Info{});
   return shared;
 }
 

@@ -20,16 +20,16 @@ using test::TensorBuilder;
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 constexpr double degree = pi<double> / 180;
 
-BrdfTable table_of(const GridFile& file, const CellPolicies& policies = {}) {
-  return BrdfTable(GridTable(file, policies), {});
+BrdfTable table_of(const MbsdfFile& file, const CellPolicies& policies = {}) {
+  return BrdfTable(MbsdfTable(file, policies), {});
 }
 
 BrdfTable table_of(const MerlFile& file, const CellPolicies& policies = {}) {
   return BrdfTable(MerlTable(file, policies), {});
 }
 
-GridFile grid_of(int n_theta, int n_phi) {
-  return synthesize_grid(parse_model("lambert:albedo=0.5"), n_theta, n_phi);
+MbsdfFile grid_of(int n_theta, int n_phi) {
+  return synthesize_mbsdf(parse_model("lambert:albedo=0.5"), n_theta, n_phi);
 }
 
 SynthOptions measured_to(double degrees) {
@@ -55,7 +55,7 @@ TEST(Measured, OriginsFollowThePolicies) {
 // One cell of a grid with centres at 7.5, 22.5, ... degrees is not a number: its weight is that of
 // interpolation, in all three coordinates.
 TEST(Measured, ShareIsThatOfTheInterpolation) {
-  GridFile file = grid_of(6, 6);
+  MbsdfFile file = grid_of(6, 6);
   for (int c = 0; c < 3; ++c) file.values[static_cast<std::size_t>((1 * 6 + 2) * 6 + 3) * 3 + c] = nan;
   const BrdfTable table = table_of(file);
   const auto share = [&](double i, double o, double phi) {
@@ -85,18 +85,18 @@ TEST(Measured, CompleteTablesAreMeasuredEverywhere) {
 TEST(Measured, RangeIsThatOfTheSynthesis) {
   const LobeModel model = parse_model("ggx:alpha=0.3");
   for (const double to : {5.0, 30.0, 60.0, 81.0}) {
-    const BrdfTable tables[] = {table_of(synthesize_grid(model, 90, 36, measured_to(to))),
+    const BrdfTable tables[] = {table_of(synthesize_mbsdf(model, 90, 36, measured_to(to))),
                                 table_of(synthesize_merl(model, measured_to(to)))};
     for (const BrdfTable& table : tables) EXPECT_NEAR(measured_to(table) / degree, to, 1e-9);
   }
   // Cells of 7.5 degrees end at the angle, or around it.
-  EXPECT_NEAR(measured_to(table_of(synthesize_grid(model, 12, 8, measured_to(30)))) / degree, 30, 1e-9);
-  EXPECT_NEAR(measured_to(table_of(synthesize_grid(model, 12, 8, measured_to(28)))) / degree, 30, 1e-9);
+  EXPECT_NEAR(measured_to(table_of(synthesize_mbsdf(model, 12, 8, measured_to(30)))) / degree, 30, 1e-9);
+  EXPECT_NEAR(measured_to(table_of(synthesize_mbsdf(model, 12, 8, measured_to(28)))) / degree, 30, 1e-9);
 }
 
 // Holes do not end the range as long as they are the lesser part.
 TEST(Measured, HolesAreNoEnd) {
-  GridFile file = grid_of(30, 30);
+  MbsdfFile file = grid_of(30, 30);
   for (std::size_t k = 0; k < file.values.size(); k += 3)
     if (k % 9 == 0) file.values[k + 1] = nan;
   EXPECT_NEAR(measured_to(table_of(file)), 90 * degree, 1e-9);

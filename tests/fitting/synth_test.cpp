@@ -33,7 +33,7 @@ TEST(SynthesizeMerl, TheTableGivesBackTheModel) {
 
 TEST(SynthesizeGrid, TheTableGivesBackTheModel) {
   const LobeModel model = parse_model("beckmann+lambert:alpha=0.4,F0=0.1,albedo=0.5/0.3/0.1");
-  const GridTable table(synthesize_grid(model));
+  const MbsdfTable table(synthesize_mbsdf(model));
   expect_gives_back(table, model);
 }
 
@@ -42,11 +42,11 @@ TEST(SynthesizeGrid, NoiseHasItsSigmaAndSeed) {
   const float exact = static_cast<float>(0.5 / pi<double>);
   SynthOptions options;
   options.noise_sigma = 0.02;
-  const GridFile a = synthesize_grid(model, 20, 40, options),
-                 b = synthesize_grid(model, 20, 40, options);
+  const MbsdfFile a = synthesize_mbsdf(model, 20, 40, options),
+                 b = synthesize_mbsdf(model, 20, 40, options);
   EXPECT_EQ(a.values, b.values);
   options.seed = 2;
-  EXPECT_NE(a.values, synthesize_grid(model, 20, 40, options).values);
+  EXPECT_NE(a.values, synthesize_mbsdf(model, 20, 40, options).values);
   double sum = 0, square = 0;
   for (float value : a.values) {
     const double ratio = value / exact - 1;
@@ -62,7 +62,7 @@ TEST(Synthesize, HolesBeyondTheMeasuredAngle) {
   const LobeModel model = parse_model("lambert:albedo=0.5");
   SynthOptions options;
   options.measured_to = 60 * pi<double> / 180;
-  const GridFile grid = synthesize_grid(model, 9, 4, options);
+  const MbsdfFile grid = synthesize_mbsdf(model, 9, 4, options);
   for (int i = 0; i < 9; ++i) {
     for (int o = 0; o < 9; ++o) {
       const float value = grid.values[((i * 9 + o) * 4 + 2) * 3];
@@ -70,7 +70,7 @@ TEST(Synthesize, HolesBeyondTheMeasuredAngle) {
           << i << " " << o;  // centres at 5, 15, ... degrees
     }
   }
-  EXPECT_NO_THROW(GridTable{grid});
+  EXPECT_NO_THROW(MbsdfTable{grid});
 
   const MerlFile all = synthesize_merl(model), part = synthesize_merl(model, options);
   size_t missing_all = 0, missing_part = 0;
@@ -86,8 +86,8 @@ TEST(Synthesize, HolesBeyondTheMeasuredAngle) {
 }
 
 TEST(SynthesizeGrid, RefusesAGridOfNothing) {
-  EXPECT_THROW(synthesize_grid(parse_model("lambert"), 1, 10), Error);
-  EXPECT_THROW(synthesize_grid(parse_model("lambert"), 10, 0), Error);
+  EXPECT_THROW(synthesize_mbsdf(parse_model("lambert"), 1, 10), Error);
+  EXPECT_THROW(synthesize_mbsdf(parse_model("lambert"), 10, 0), Error);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace {
 
 std::shared_ptr<const BrdfTable> table_of(const char* description) {
   return std::make_shared<const BrdfTable>(
-      GridTable(synthesize_grid(parse_model(description), 32, 48)), BrdfTable::Info{});
+      MbsdfTable(synthesize_mbsdf(parse_model(description), 32, 48)), BrdfTable::Info{});
 }
 
 Bsdf make_material() {

@@ -21,7 +21,7 @@ Scene plate(const char* model = "ggx:alpha=0.15,F0=0.9") {
                            "test", {});
   scene.materials[0].bsdf = nullptr;
   scene.materials[0].table =
-      std::make_shared<const BrdfTable>(GridTable(synthesize_grid(parse_model(model), 24, 48)), BrdfTable::Info{"test", "test", "mbsdf", "", 0, {}});
+      std::make_shared<const BrdfTable>(MbsdfTable(synthesize_mbsdf(parse_model(model), 24, 48)), BrdfTable::Info{"test", "test", "mbsdf", "", 0, {}});
   return scene;
 }
 

@@ -32,7 +32,7 @@ class FitToolTest : public testing::Test {
 
   /// A table of 24 x 24 x 36 cells.
   void write_table(const std::string& name, const char* model) const {
-    write_mbsdf(path(name), synthesize_grid(parse_model(model), 24, 36));
+    write_mbsdf(path(name), synthesize_mbsdf(parse_model(model), 24, 36));
   }
 
   Outcome execute(const std::string& arguments) const {
@@ -204,7 +204,7 @@ TEST_F(FitToolTest, ModelFilesAreInputs) {
   expect_ok("convert fit.json c.binary");
   EXPECT_TRUE(read_bytes(path("s.binary")) == read_bytes(path("c.binary")));
   expect_ok("convert fit.json c.mbsdf --grid 12x8");
-  EXPECT_EQ(read_mbsdf(path("c.mbsdf")).values, synthesize_grid(model, 12, 8).values);
+  EXPECT_EQ(read_mbsdf(path("c.mbsdf")).values, synthesize_mbsdf(model, 12, 8).values);
   expect_ok("convert fit.json c.exr --incident 3");
   EXPECT_TRUE(std::filesystem::exists(path("c.exr")));
   const glm::vec3 wi(0.6f, 0, 0.8f), wo(-0.48f, 0.36f, 0.8f);
@@ -298,7 +298,7 @@ TEST_F(FitToolTest, ReportComparesLobesAndStacks) {
 TEST_F(FitToolTest, ReportOfATableMeasuredToThirtyDegrees) {
   SynthOptions options;
   options.measured_to = 30 * pi<double> / 180;
-  write_mbsdf(path("a.mbsdf"), synthesize_grid(parse_model(one_lobe), 24, 24, options));
+  write_mbsdf(path("a.mbsdf"), synthesize_mbsdf(parse_model(one_lobe), 24, 24, options));
   expect_ok("report a.mbsdf -o report --grid 6x6 --incident 3");
   const auto material = nlohmann::json::parse(read_bytes(path("report/report.json")))["materials"][0];
   ASSERT_EQ(material["fits"].size(), 3u);

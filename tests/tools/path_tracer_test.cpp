@@ -22,11 +22,11 @@ std::shared_ptr<const BrdfTable> table_of(BrdfTable::Data data) {
 
 /// An f_r of 0.5 / pi in every cell.
 std::shared_ptr<const BrdfTable> grey_table() {
-  return table_of(GridTable(GridFile{6, 6, 8, 3, std::vector<float>(3 * 6 * 6 * 8, 0.5f / pi<float>), "", false}));
+  return table_of(MbsdfTable(MbsdfFile{6, 6, 8, 3, std::vector<float>(3 * 6 * 6 * 8, 0.5f / pi<float>), "", false}));
 }
 
 std::shared_ptr<const BrdfTable> glossy_table() {
-  static const auto table = table_of(GridTable(synthesize_grid(parse_model("ggx:alpha=0.25,F0=0.3+lambert:albedo=0.5/0.3/0.2"), 24, 48)));
+  static const auto table = table_of(MbsdfTable(synthesize_mbsdf(parse_model("ggx:alpha=0.25,F0=0.3+lambert:albedo=0.5/0.3/0.2"), 24, 48)));
   return table;
 }
 

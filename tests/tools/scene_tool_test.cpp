@@ -29,7 +29,7 @@ class SceneToolTest : public testing::Test {
   std::filesystem::path path(const std::string& name) const { return folder_.path() / name; }
 
   void write_table(const std::string& name, const std::string& model) const {
-    write_mbsdf(path(name), synthesize_grid(parse_model(model), 30, 36));
+    write_mbsdf(path(name), synthesize_mbsdf(parse_model(model), 30, 36));
   }
 
   void write_scene(const json& materials) const {

@@ -8,7 +8,7 @@ namespace gonio {
 namespace {
 
 void warn_of_transmission(const BrdfTable& table) {
-  const auto* grid = std::get_if<GridTable>(&table.data());
+  const auto* grid = std::get_if<MbsdfTable>(&table.data());
   if (grid == nullptr || !grid->has_transmission()) return;
   std::fprintf(stderr, "%s: warning: the file has transmission as well, which is left out\n",
                table.info().source.c_str());

@@ -101,7 +101,7 @@ void model_to_table(const CLI::App& verb, const Options& options, const std::str
     throw Error("--grid: found " + options.grid + ", expected at most " +
                 std::to_string(max_grid_side) + " thetas and phis");
   }
-  write_mbsdf(options.out, synthesize_grid(model, thetas, phis));
+  write_mbsdf(options.out, synthesize_mbsdf(model, thetas, phis));
 }
 
 void any_to_rgl(const CLI::App& verb, const Options& options) {

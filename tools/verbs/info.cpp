@@ -107,7 +107,7 @@ void add_layout(Facts& facts, const RglTable& table) {
   angles(facts, static_cast<double>(table.theta_i().front()), static_cast<double>(table.theta_i().back()));
 }
 
-void add_layout(Facts& facts, const GridTable& table) {
+void add_layout(Facts& facts, const MbsdfTable& table) {
   const double half_cell = pi<double> / 4 / table.n_theta_in();
   both(facts, "format", "MBSDF");
   both(facts, "size", std::to_string(table.n_theta_in()) + " x " + std::to_string(table.n_theta_out()) +
@@ -152,7 +152,7 @@ void add_doubts(Facts& facts, const BrdfTable& table) {
   const FlatFrom from = flat_from(table);
   flat("theta_i", from.theta_i);
   flat("theta_o", from.theta_o);
-  if (const auto* grid = std::get_if<GridTable>(&table.data()); grid != nullptr && grid->has_transmission())
+  if (const auto* grid = std::get_if<MbsdfTable>(&table.data()); grid != nullptr && grid->has_transmission())
     doubt("the transmission of the file is left out");
   if (const auto* rgl = std::get_if<RglTable>(&table.data())) {
     const CellCounts& densities = rgl->densities();

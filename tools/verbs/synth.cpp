@@ -76,7 +76,7 @@ void synth(Options& options) {
   if (extension == ".binary") {
     write_merl(options.out, synthesize_merl(model, options.synth));
   } else {
-    write_mbsdf(options.out, synthesize_grid(model, 90, 180, options.synth));
+    write_mbsdf(options.out, synthesize_mbsdf(model, 90, 180, options.synth));
   }
   print_written(options.out);
 }

@@ -14,7 +14,7 @@ double transfer_density(const BrdfTable& table, double theta_i, const Vec3<doubl
   const glm::vec3 wi(static_cast<float>(std::sin(theta_i)), 0, static_cast<float>(std::cos(theta_i)));
   const glm::vec3 w(wo);
   const double left = luminance(table.eval(wi, w));
-  if (std::holds_alternative<GridTable>(table.data())) return left * wo.z;  // mirrored as it is
+  if (std::holds_alternative<MbsdfTable>(table.data())) return left * wo.z;  // mirrored as it is
   const double right = luminance(table.eval(wi, {w.x, -w.y, w.z}));
   return (left + right) / 2 * wo.z;
 }

@@ -21,7 +21,7 @@ constexpr double smallest_gap = 0.1 * degree;
 std::vector<double> incident_nodes(const BrdfTable& table, Interpolation interpolation) {
   std::vector<double> nodes;
   if (interpolation != Interpolation::blend) return nodes;
-  if (const auto* grid = std::get_if<GridTable>(&table.data())) {
+  if (const auto* grid = std::get_if<MbsdfTable>(&table.data())) {
     for (int i = 0; i < grid->n_theta_in(); ++i) nodes.push_back((i + 0.5) * pi<double> / 2 / grid->n_theta_in());
   } else if (const auto* rgl = std::get_if<RglTable>(&table.data())) {
     nodes.assign(rgl->theta_i().begin(), rgl->theta_i().end());
@@ -63,7 +63,7 @@ class Growth {
       : recipe_(recipe), interpolation_(interpolation), limits_(limits), progress_(progress),
         nodes_(incident_nodes(recipe.table(), interpolation)) {
     // Constant beyond them, too: such a table has no more to give.
-    nodes_alone_ = std::holds_alternative<GridTable>(recipe.table().data()) && recipe.chart() == Chart::outgoing &&
+    nodes_alone_ = std::holds_alternative<MbsdfTable>(recipe.table().data()) && recipe.chart() == Chart::outgoing &&
                    interpolation == Interpolation::blend;
     const double first = nodes_alone_ ? nodes_.front() : 0, last = nodes_alone_ ? nodes_.back() : largest_angle;
     std::set<double> start{first, last};

@@ -2,6 +2,7 @@
 #include <gonio/brdf/formats/repair.h>
 #include <gonio/brdf/formats/rgl/rgl.h>
 #include <gonio/mapping/base/error.h>
+#include <gonio/mapping/numeric/pi.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +13,6 @@
 namespace gonio {
 namespace {
 
-constexpr float pi = 3.14159265358979323846f;
 
 // Of the unit square: draws nearer to its sides have their pdf computed from their direction.
 constexpr float edge = 0x1p-12f;
@@ -23,12 +23,12 @@ float theta_of(const glm::vec3& w) noexcept {
 }
 
 // The file's chart of directions: u_theta = sqrt(2 theta / pi), u_phi = (phi + pi) / (2 pi).
-float u_theta_of(float theta) noexcept { return std::sqrt(theta * (2.0f / pi)); }
+float u_theta_of(float theta) noexcept { return std::sqrt(theta * (2.0f / pi<float>)); }
 
 // Solid angle of the normals per unit area of the chart. The authors' loader lets it fall to 1e-6 and no further: next to
 // the pole, where the densities of the chart fall to 0 with it, the pdf would then be too small by any factor.
 float area_of_normals(float u_theta, float sine) noexcept {
-  return std::max(2.0f * pi * pi * u_theta * sine, 1e-20f);
+  return std::max(2.0f * pi<float> * pi<float> * u_theta * sine, 1e-20f);
 }
 
 float bilinear(const RglFile::Grid& grid, float x, float y) noexcept {
@@ -133,7 +133,7 @@ RglTable::Normal RglTable::half_vector(const glm::vec3& wi, const glm::vec3& wo)
   const float phi = fast_atan2(ix * m.y - iy * m.x, ix * m.x + iy * m.y);
   const float m_xy = std::sqrt(m.x * m.x + m.y * m.y);
   const float u_theta = u_theta_of(fast_atan2(m_xy, m.z));
-  const float u_phi = phi * (0.5f / pi) + 0.5f;
+  const float u_phi = phi * (0.5f / pi<float>) + 0.5f;
   return {u_theta, u_phi, area_of_normals(u_theta, m_xy / glm::length(m))};
 }
 
@@ -199,8 +199,8 @@ std::optional<RglTable::Sample> RglTable::sample(const glm::vec3& wi, float u1,
   const Warp2d::Point place = luminance_.sample(slice, u2, u1);
   const Warp2d::Point chart = vndf_.sample(slice, place.x, place.y);
 
-  const float theta_m = 0.5f * pi * chart.x * chart.x;
-  const float phi_m = (2.0f * chart.y - 1.0f) * pi + fast_atan2(wi.y, wi.x);
+  const float theta_m = 0.5f * pi<float> * chart.x * chart.x;
+  const float phi_m = (2.0f * chart.y - 1.0f) * pi<float> + fast_atan2(wi.y, wi.x);
   const float sine = std::sin(theta_m);
   const glm::vec3 m(sine * std::cos(phi_m), sine * std::sin(phi_m), std::cos(theta_m));
   const float cosine = glm::dot(wi, m);
