@@ -366,7 +366,7 @@ TEST(Fit, RefusesNothingToFit) {
 
 TEST(NonNegativeLeastSquares, StopsAtZero) {
   // min (x + y - 1)^2 + (x - y - 3)^2: free optimum (2, -1), with y >= 0 it is (2, 0).
-  const std::vector<double> x = detail::non_negative_least_squares({2, 0, 0, 2}, {4, -2});
+  const Eigen::VectorXd x = detail::non_negative_least_squares(Eigen::Matrix2d{{1, 1}, {1, -1}}, Eigen::Vector2d(1, 3));
   EXPECT_NEAR(x[0], 2, 1e-12);
   EXPECT_EQ(x[1], 0);
 }
