@@ -15,7 +15,8 @@ using detail::theta_of;
 
 constexpr double degree = pi<double> / 180;
 
-/// The power iteration for D at nodes, see extract_ndf().
+/// The power iteration for D at nodes, see extract_ndf(). A solver of eigenvalues would not do: how D goes on beyond the
+/// measured angles is not linear in D, and neither is independent masking.
 class Extraction {
  public:
   Extraction(const std::function<double(double)>& retro_reflection, int nodes)

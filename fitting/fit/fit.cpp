@@ -1,4 +1,5 @@
 #include <ceres/ceres.h>
+#include <Eigen/Core>
 #include <gonio/mapping/base/parallel.h>
 #include <gonio/fitting/fit/fit.h>
 #include <gonio/fitting/fit/linear_start.h>
@@ -134,11 +135,12 @@ class Fitter {
   double cost(const ParameterLayout& layout, const LobeModel& model) const {
     const std::vector<double> x = layout.pack(model);
     const double* parameters[1] = {x.data()};
-    double sum = 0, residual[3];
+    double sum = 0;
     for (const FitSample& sample : samples_) {
-      SampleResidual(sample, layout, options_.compression).Evaluate(parameters, residual, nullptr);
-      const double square =
-          residual[0] * residual[0] + residual[1] * residual[1] + residual[2] * residual[2];
+      Eigen::Vector3d residual;
+      SampleResidual(sample, layout, options_.compression)
+          .Evaluate(parameters, residual.data(), nullptr);
+      const double square = residual.squaredNorm();
       const double width = options_.robust_width * sample.weight;
       sum += width > 0 && square > width * width ? 2 * width * std::sqrt(square) - width * width
                                                  : square;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <gonio/fitting/fit/residual.h>
 
 #include <vector>
@@ -12,8 +13,7 @@ namespace gonio::detail {
 /// Conductors take the eta and k that give the F0 found, with eta = 1.
 void solve_colors(const std::vector<FitSample>& samples, Compression compression, LobeModel& model);
 
-/// Minimises |A x - b|^2 over x >= 0, from the normal equations (ata row by row, n x n).
-std::vector<double> non_negative_least_squares(const std::vector<double>& ata,
-                                               const std::vector<double>& atb);
+/// Minimises |A x - b|^2 over x >= 0.
+Eigen::VectorXd non_negative_least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
 
 }  // namespace gonio::detail

@@ -1,3 +1,4 @@
+#include <Eigen/Core>
 #include <gonio/fitting/fit/residual.h>
 #include <gonio/mapping/base/error.h>
 
@@ -127,9 +128,10 @@ bool SampleResidual::Evaluate(double const* const* parameters, double* residuals
   using Jet = ceres::Jet<double, 2>;  // two shape parameters, or the two of a Fresnel term
   static_assert(max_shape == 2);
   const double* x = parameters[0];
-  double* jacobian = jacobians ? jacobians[0] : nullptr;
-  const int n = layout_.size();
-  if (jacobian) std::fill(jacobian, jacobian + 3 * n, 0.0);
+  const bool derive = jacobians && jacobians[0];
+  Eigen::Map<Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>> jacobian(
+      derive ? jacobians[0] : nullptr, 3, layout_.size());
+  if (derive) jacobian.setZero();
   const std::vector<ParameterLayout::Entry>& entries = layout_.entries();
 
   glm::dvec3 sum(0);
@@ -149,7 +151,7 @@ bool SampleResidual::Evaluate(double const* const* parameters, double* residuals
           shape[i].a = entries[k].parameter->logarithmic ? scale : x[k];
           shape[i].v[i] = scale;
         }
-        if (jacobian && shapes > 0) {
+        if (derive && shapes > 0) {
           value = visit_lobe(lobe.kind, shape,
                              [&](const auto& functor) { return functor.eval(sample_.angles); });
         } else {
@@ -174,12 +176,11 @@ bool SampleResidual::Evaluate(double const* const* parameters, double* residuals
                      : conductor(color[0], color[1], sample_.angles.cos_d);
       }
       sum[c] += factor.a * value.a;
-      if (!jacobian) continue;
-      double* row = jacobian + c * n;
+      if (!derive) continue;
       for (int i = 0; i < shapes; ++i) {
-        row[at + i * stride + (stride == 3 ? c : 0)] += factor.a * value.v[i];
+        jacobian(c, at + i * stride + (stride == 3 ? c : 0)) = factor.a * value.v[i];
       }
-      for (int i = 0; i < colors; ++i) row[color_at + 3 * i + c] += factor.v[i] * value.a;
+      for (int i = 0; i < colors; ++i) jacobian(c, color_at + 3 * i + c) = factor.v[i] * value.a;
     }
     at = color_at + 3 * colors;
   }
@@ -187,10 +188,8 @@ bool SampleResidual::Evaluate(double const* const* parameters, double* residuals
     const double g = sum[c] * sample_.angles.cos_o;
     double slope = 0;
     residuals[c] =
-        sample_.weight * (compress(compression_, g, jacobian ? &slope : nullptr) - target_[c]);
-    if (!jacobian) continue;
-    slope *= sample_.weight * sample_.angles.cos_o;
-    for (int k = 0; k < n; ++k) jacobian[c * n + k] *= slope;
+        sample_.weight * (compress(compression_, g, derive ? &slope : nullptr) - target_[c]);
+    if (derive) jacobian.row(c) *= slope * sample_.weight * sample_.angles.cos_o;
   }
   return true;
 }

@@ -18,11 +18,11 @@ constexpr double least_cos_d = 1e-4;  // of the half vectors that the quadrature
 
 glm::dvec3 incident(double theta_i) { return {std::sin(theta_i), 0, std::cos(theta_i)}; }
 
-template <class T>
-T density(const Quadrature& quadrature, const Quadrature::Point& point, const T* weight,
-          const ShearedGgx<T>* shape, size_t lobes) {
-  T sum = weight[0] * T(cosine_pdf(point.wo.z));
-  for (size_t k = 0; k < lobes; ++k) sum += weight[k + 1] * shape[k].pdf(quadrature.wi, point.wo);
+double density(const Quadrature& quadrature, const Quadrature::Point& point,
+               const Proposal& proposal) {
+  double sum = proposal.weight[0] * cosine_pdf(point.wo.z);
+  for (size_t k = 0; k < proposal.shape.size(); ++k)
+    sum += proposal.weight[k + 1] * proposal.shape[k].pdf(quadrature.wi, point.wo);
   return sum;
 }
 
@@ -43,32 +43,27 @@ class Divergence : public ceres::CostFunction {
   }
 
   bool Evaluate(double const* const* x, double* residuals, double** jacobians) const override {
-    double weight[1 + LobeSampler::max_lobes];
-    const double rest = weights(x[0], weight);
-    double* by_root = jacobians ? jacobians[0] : nullptr;
-    double* by_shape = jacobians ? jacobians[1] : nullptr;
-    if (by_shape) {
-      fill<ceres::Jet<double, shape_size>>(x, weight, rest, residuals, by_root, by_shape);
+    if (jacobians && jacobians[1]) {
+      fill<ceres::Jet<double, shape_size>>(x, residuals, jacobians[0], jacobians[1]);
     } else {
-      fill<double>(x, weight, rest, residuals, by_root, by_shape);
+      fill<double>(x, residuals, jacobians ? jacobians[0] : nullptr, nullptr);
     }
     return true;
   }
 
-  /// Sums to 1. Returns the sum of the squares before normalisation.
-  double weights(const double* x, double* weight) const {
-    double sum = 0;
-    for (size_t k = 0; k <= lobes_; ++k) sum += x[k] * x[k];
-    for (size_t k = 0; k <= lobes_; ++k) weight[k] = (1 - cosine_share_) * x[k] * x[k] / sum;
+  /// Sums to 1.
+  PerPart weights(const PerPart& root) const {
+    PerPart weight = (1 - cosine_share_) * root.square() / root.square().sum();
     weight[0] += cosine_share_;
-    return sum;
+    return weight;
   }
 
  private:
   template <class T>
-  void fill(double const* const* x, const double* weight, double root_sum, double* residual,
-            double* by_root, double* by_shape) const {
+  void fill(double const* const* x, double* residual, double* by_root, double* by_shape) const {
     using std::exp;
+    const PerPart root = Eigen::Map<const PerPart>(x[0], 1 + lobes_), weight = weights(root);
+    const double root_sum = root.square().sum();
     ShearedGgx<T> shape[LobeSampler::max_lobes];
     for (size_t k = 0; k < lobes_; ++k) {
       T p[shape_size];
@@ -77,6 +72,7 @@ class Divergence : public ceres::CostFunction {
     }
     for (const Quadrature::Point& point : quadrature_.points) {
       T part[LobeSampler::max_lobes];
+      // Sums of so few terms are faster in one loop than as Eigen's of a size known at run time.
       double value[1 + LobeSampler::max_lobes] = {cosine_pdf(point.wo.z)};
       double p = weight[0] * value[0] + 1e-12;
       double mean = (weight[0] - cosine_share_) * value[0];  // with the weights that x decides
@@ -91,12 +87,11 @@ class Divergence : public ceres::CostFunction {
       const double slope = -0.5 * scale * (point.target + p) / p;  // of the residual by p
       if (by_root) {
         for (size_t k = 0; k <= lobes_; ++k)
-          *by_root++ = slope * 2 * x[0][k] / root_sum * ((1 - cosine_share_) * value[k] - mean);
+          *by_root++ = slope * 2 * root[k] / root_sum * ((1 - cosine_share_) * value[k] - mean);
       }
       if constexpr (!std::is_same_v<T, double>) {
-        for (size_t k = 0; k < lobes_; ++k) {
-          for (int i = 0; i < shape_size; ++i) *by_shape++ = slope * weight[k + 1] * part[k].v[i];
-        }
+        for (size_t k = 0; k < lobes_; ++k, by_shape += shape_size)
+          Eigen::Vector3d::Map(by_shape) = slope * weight[k + 1] * part[k].v;
       }
     }
   }
@@ -131,7 +126,8 @@ std::vector<Proposal> other_starts(const Proposal& model, double cosine_share) {
   for (double alpha : widest) {
     for (double shear : lean) {
       Proposal start;
-      start.weight.assign(lobes + 1, (1 - cosine_share) / static_cast<double>(lobes + 1));
+      start.weight =
+          PerPart::Constant(lobes + 1, (1 - cosine_share) / static_cast<double>(lobes + 1));
       start.weight[0] += cosine_share;
       for (size_t k = 0; k < lobes; ++k) {
         const double width = alpha / std::pow(2.5, static_cast<double>(k));
@@ -147,16 +143,15 @@ std::vector<Proposal> other_starts(const Proposal& model, double cosine_share) {
 constexpr double dead_weight = 0.02;
 
 size_t heaviest(const Proposal& p) {
-  return static_cast<size_t>(std::max_element(p.weight.begin() + 1, p.weight.end()) -
-                             p.weight.begin()) -
-         1;
+  Eigen::Index lobe = 0;
+  p.weight.tail(p.shape.size()).maxCoeff(&lobe);
+  return static_cast<size_t>(lobe);
 }
 
 // Dead lobes start again beside the heaviest one, narrower and wider in turn.
 Proposal revived(Proposal p) {
   const ShearedGgx<double> model = p.shape[heaviest(p)];
   bool narrower = true;
-  double sum = 0;
   for (size_t k = 0; k < p.shape.size(); ++k) {
     if (p.weight[k + 1] >= dead_weight) continue;
     const double factor = narrower ? 0.6 : 1.7;
@@ -164,15 +159,13 @@ Proposal revived(Proposal p) {
     p.weight[k + 1] = 0.15;
     narrower = !narrower;
   }
-  for (double w : p.weight) sum += w;
-  for (double& w : p.weight) w /= sum;
+  p.weight /= p.weight.sum();
   return p;
 }
 
 Proposal refine_from(const Quadrature& quadrature, const Proposal& start, double cosine_share) {
   Proposal best = refine_proposal(quadrature, start, true, cosine_share);
-  if (!quadrature.points.empty() && std::any_of(best.weight.begin() + 1, best.weight.end(),
-                                                [](double w) { return w < dead_weight; })) {
+  if (!quadrature.points.empty() && (best.weight.tail(best.shape.size()) < dead_weight).any()) {
     const Proposal other = refine_proposal(quadrature, revived(best), true, cosine_share);
     if (relative_variance(quadrature, other) < relative_variance(quadrature, best)) best = other;
   }
@@ -215,7 +208,7 @@ Quadrature quadrature(const BrdfFunction& f, double theta_i) {
 
 Proposal albedo_proposal(const LobeModel& model, double theta_i, double cosine_share) {
   Proposal proposal;
-  proposal.weight.push_back(0);
+  proposal.weight = PerPart::Zero(1 + model.specular_count());
   const glm::dvec3 wi = incident(theta_i);
   for (const Lobe& lobe : model.lobes) {
     size_t part = 0;
@@ -224,18 +217,21 @@ Proposal albedo_proposal(const LobeModel& model, double theta_i, double cosine_s
       const double width =
           ggx_width(lobe.kind, (lobe.shape[0].r + lobe.shape[0].g + lobe.shape[0].b) / 3);
       proposal.shape.push_back({width, width, 0});
-      part = proposal.weight.size();
-      proposal.weight.push_back(0);
+      part = proposal.shape.size();
     }
     const LobeModel single{"", {lobe}};
     for_half_vectors(wi, least_cos_d, [&](const glm::dvec3& wo, double solid_angle) {
       proposal.weight[part] += luminance(glm::vec3(single.eval(wi, wo))) * wo.z * solid_angle;
     });
   }
-  double sum = 0;
-  for (double w : proposal.weight) sum += w;
-  for (double& w : proposal.weight) w = sum > 0 ? (1 - cosine_share) * w / sum : 0;
-  proposal.weight[0] += sum > 0 ? cosine_share : 1;
+  const double sum = proposal.weight.sum();
+  if (sum > 0) {
+    proposal.weight *= (1 - cosine_share) / sum;
+    proposal.weight[0] += cosine_share;
+  } else {
+    proposal.weight.setZero();
+    proposal.weight[0] = 1;
+  }
   return proposal;
 }
 
@@ -243,9 +239,7 @@ double relative_variance(const Quadrature& quadrature, const Proposal& proposal)
   double sum = 0;
   for (const Quadrature::Point& point : quadrature.points) {
     if (!(point.target > 0)) continue;
-    const double p = density(quadrature, point, proposal.weight.data(), proposal.shape.data(),
-                             proposal.shape.size());
-    sum += point.solid_angle * point.target * point.target / p;
+    sum += point.solid_angle * point.target * point.target / density(quadrature, point, proposal);
   }
   return sum - 1;
 }
@@ -254,11 +248,10 @@ Proposal refine_proposal(const Quadrature& quadrature, const Proposal& start, bo
                          double cosine_share) {
   const size_t lobes = start.shape.size();
   if (quadrature.points.empty() || lobes == 0) return start;
-  std::vector<double> root, shape;
-  for (size_t k = 0; k <= lobes; ++k) {
-    // Not from 0, where the square root has no slope.
-    root.push_back(std::sqrt(std::fmax(start.weight[k] - (k == 0 ? cosine_share : 0), 0.02)));
-  }
+  PerPart root = start.weight;
+  root[0] -= cosine_share;
+  root = root.max(0.02).sqrt();  // not from 0, where the square root has no slope
+  std::vector<double> shape;
   for (const ShearedGgx<double>& s : start.shape) {
     for (double alpha : {s.alpha_x, s.alpha_y}) {
       shape.push_back(std::log(std::fmin(std::fmax(alpha, min_alpha), max_alpha)));
@@ -284,7 +277,7 @@ Proposal refine_proposal(const Quadrature& quadrature, const Proposal& start, bo
   if (!summary.IsSolutionUsable()) return start;
 
   Proposal result = start;
-  Divergence(quadrature, lobes, cosine_share).weights(root.data(), result.weight.data());
+  result.weight = Divergence(quadrature, lobes, cosine_share).weights(root);
   for (size_t k = 0; k < lobes; ++k) {
     const double* p = shape.data() + k * shape_size;
     result.shape[k] = {std::exp(p[0]), std::exp(p[1]), p[2]};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <gonio/fitting/fit/brdf_function.h>
 #include <gonio/fitting/sampling/lobe_sampler.h>
 #include <gonio/fitting/sampling/sheared_ggx.h>
@@ -9,10 +10,14 @@
 /// How a LobeSampler finds its weights and shapes; not installed.
 namespace gonio::detail {
 
+/// A number for each part of the mixture: the cosine, then the lobes. Does not allocate.
+using PerPart =
+    Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, 1 + LobeSampler::max_lobes, 1>;
+
 /// The mixture at one incident angle.
 struct Proposal {
-  std::vector<double> weight;             ///< cosine first; sum 1
-  std::vector<ShearedGgx<double>> shape;  ///< of the other parts
+  PerPart weight;                         ///< sum 1
+  std::vector<ShearedGgx<double>> shape;  ///< of the lobes
 };
 
 /// The integrand at one incident angle, at half vectors that are dense about the normal, where

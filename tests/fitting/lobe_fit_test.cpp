@@ -1,4 +1,5 @@
 #include <ceres/gradient_checker.h>
+#include <Eigen/Dense>
 #include <gonio/brdf/formats/merl.h>
 #include <gonio/fitting/fit/fit.h>
 #include <gonio/fitting/fit/linear_start.h>
@@ -95,7 +96,7 @@ glm::dvec2 conductor_bound(const Lobe& lobe, double cutoff) {
   const LobeModel model{"", {lobe}};
   const detail::ParameterLayout layout(model, false);
   const std::vector<double> x = layout.pack(model);
-  double ee = 0, ek = 0, kk = 0;
+  Eigen::Matrix2d information = Eigen::Matrix2d::Zero();  // Fisher's, of eta and k
   for (detail::FitSample sample : detail::fit_samples(exact(model), options)) {
     if (!(sample.value.r > 0)) continue;
     sample.weight = 1;
@@ -104,12 +105,11 @@ glm::dvec2 conductor_bound(const Lobe& lobe, double cutoff) {
     const double* parameters[] = {x.data()};
     double residuals[3], *jacobians[] = {jacobian.data()};
     residual.Evaluate(parameters, residuals, jacobians);
-    const double sigma = 0.02 * sample.value.r;
-    const double e = jacobian[1] / sigma, k = jacobian[4] / sigma;  // alpha, eta rgb, k rgb
-    ee += e * e, ek += e * k, kk += k * k;
+    const Eigen::Vector2d slope(jacobian[1], jacobian[4]);  // alpha, eta rgb, k rgb
+    information += slope * slope.transpose() / std::pow(0.02 * sample.value.r, 2);
   }
-  const double determinant = ee * kk - ek * ek;
-  return {std::sqrt(kk / determinant), std::sqrt(ee / determinant) / lobe.color[1].r};
+  const Eigen::Vector2d deviation = information.inverse().diagonal().cwiseSqrt();
+  return {deviation[0], deviation[1] / lobe.color[1].r};
 }
 
 // Every eta and k comes back without noise. With it the reflectance does, and where the table
@@ -366,7 +366,7 @@ TEST(Fit, RefusesNothingToFit) {
 
 TEST(NonNegativeLeastSquares, StopsAtZero) {
   // min (x + y - 1)^2 + (x - y - 3)^2: free optimum (2, -1), with y >= 0 it is (2, 0).
-  const std::vector<double> x = detail::non_negative_least_squares({2, 0, 0, 2}, {4, -2});
+  const Eigen::VectorXd x = detail::non_negative_least_squares(Eigen::Matrix2d{{1, 1}, {1, -1}}, Eigen::Vector2d(1, 3));
   EXPECT_NEAR(x[0], 2, 1e-12);
   EXPECT_EQ(x[1], 0);
 }
