@@ -112,7 +112,7 @@ HWY_INLINE InDiagrams draw_displaced(const BatchLayout& layout, const float* blo
           displaced_density(w0, w1, whole, {x.mass, x.r, x.pdf}, {other(x.mass), other(x.r), other(x.pdf)}, r)};
 }
 
-/// BatchSampler::sample(), of direction and pdf alone where there is no colour.
+/// Bsdf::sample(), of direction and pdf alone where there is no colour.
 bool draw(const BatchLayout& layout, const BatchColour* colour, const glm::vec3& wi, const glm::vec2& u, BsdfSample& out) {
   if (!(gonio::is_above(wi) && std::isfinite(u.x + u.y))) return false;
   const Frame frame({set(wi.x), set(wi.y), set(wi.z)});

@@ -29,7 +29,7 @@ std::vector<GalleryStack> gallery_stacks();
 /// Whether all diagrams of a stack have the lines of the first, as Interpolation::blend needs.
 bool shared_lines(const StackGrid& grid);
 
-/// A measured table, as a file would hold it: what BrdfTable and Sampler are built from.
+/// A measured table, as a file would hold it: what BrdfTable and Bsdf are made of.
 struct GalleryTable {
   std::string name;
   std::string reason;

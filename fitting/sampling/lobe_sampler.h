@@ -37,7 +37,7 @@ struct LobeSamplerOptions {
 /// cos_o, which is the relative variance of one draw, is minimised by Ceres; shapes are those of
 /// ShearedGgx.
 ///
-/// Frame and one-sidedness as in Sampler. Thread safety: immutable; every const member may be
+/// Frame and one-sidedness as in Bsdf. Thread safety: immutable; every const member may be
 /// called concurrently. No member but the constructor allocates or locks.
 class LobeSampler {
  public:
