@@ -11,7 +11,7 @@
 #include <gonio/brdf/proof/gallery.h>
 #include <gonio/brdf/proof/statistics/random.h>
 #include <gonio/mapping/base/error.h>
-#include <gonio/tests/batch_targets.h>
+#include "tests/batch_targets.h"
 
 namespace gonio {
 namespace {

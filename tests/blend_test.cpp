@@ -9,9 +9,10 @@
 #include <set>
 #include <string>
 
-#include <gonio/brdf/bsdf/compact_bsdf.h>
+#include <gonio/brdf/build/stack/build_stack.h>
+#include <gonio/brdf/build/compact/colour_of_table.h>
 #include <gonio/brdf/proof/gallery.h>
-#include <gonio/brdf/bsdf/sampler.h>
+#include <gonio/brdf/value/luminance.h>
 #include <gonio/mapping/base/error.h>
 
 namespace gonio {
@@ -133,16 +134,20 @@ const proof::GalleryTable& gallery_table(const std::string& name) {
   throw std::logic_error("the Gallery has no table " + name);
 }
 
+StackGrid half_vector_stack(const BrdfTable& table, std::size_t budget) {
+  BsdfOptions options;
+  options.chart = Chart::half;
+  options.meridians = options.parallels = 40;
+  options.budget = budget;
+  return build_stack(table, options);
+}
+
 // No energy is lost at the horizon: the mean weight is the albedo by quadrature, at every angle.
 TEST(HalfVectorStack, KeepsTheEnergy) {
   const auto table = std::make_shared<const BrdfTable>(to_table(gallery_table("asymmetric")));
-  StackOptions options;
-  options.chart = Chart::half;
-  options.interpolation = Interpolation::blend;
-  options.bytes = 64 * 1024;
-  const Sampler sampler(table, options);
+  const Bsdf bsdf({half_vector_stack(*table, 64 * 1024), Interpolation::blend, Storage::float32, {}}, table);
   for (const double degrees : {2, 10, 30, 50, 70, 80, 85, 89}) {
-    const auto q = proof::measure(proof::subject_of(sampler), degrees * pi<double> / 180);
+    const auto q = proof::measure(proof::subject_of(bsdf), degrees * pi<double> / 180);
     EXPECT_NEAR(luminance(glm::vec3(q.albedo)) / luminance(glm::vec3(q.albedo_table)), 1, 5e-4) << degrees;
     EXPECT_EQ(q.invalid_fraction, 0) << degrees;
   }
@@ -150,20 +155,19 @@ TEST(HalfVectorStack, KeepsTheEnergy) {
 
 TEST(HalfVectorStack, SelfContainedAgreesWithItself) {
   const auto table = std::make_shared<const BrdfTable>(to_table(gallery_table("asymmetric")));
-  StackOptions options;
-  options.chart = Chart::half;
-  options.interpolation = Interpolation::blend;
-  options.bytes = 32 * 1024;
-  const StackGrid grid = build_stack(*table, options);
-  const Stack<float> stack(grid, Interpolation::blend);
-  const CompactBsdf sampler(grid, Interpolation::blend, Storage::float32,
-                            Colour::from_table(*table, direction_map(stack), stack.theta_i(), 16));
+  BsdfData data{half_vector_stack(*table, 32 * 1024), Interpolation::blend, Storage::float32, {}};
+  const Stack<float> stack = sampled_stack(data);
+  data.colour = colour_of_table(*table, direction_map(stack), stack.theta_i(), 16);
+  const Bsdf bsdf(data);
+  const StackBsdf plain(data);
   proof::InvariantOptions invariants = invariant_options();
   // Towards the horizon the density falls to 0 in the last ulps of r, and its relative error rises.
   invariants.density_floor = 1e-2;
   invariants.weight_bound = 1e-3;
-  for (const double theta_i : {0.3, 0.9})
-    EXPECT_THAT_SAMPLER_INVARIANTS_HOLD(proof::subject_of(sampler), theta_i, invariants);
+  for (const double theta_i : {0.3, 0.9}) {
+    EXPECT_THAT_SAMPLER_INVARIANTS_HOLD(proof::subject_of(plain), theta_i, invariants);
+    EXPECT_THAT_SAMPLER_INVARIANTS_HOLD(proof::subject_of(bsdf), theta_i, invariants);
+  }
 }
 
 }  // namespace

@@ -6,9 +6,10 @@
 #include <memory>
 #include <set>
 
+#include <gonio/brdf/build/stack/build_stack.h>
 #include <gonio/brdf/proof/gallery.h>
 #include <gonio/brdf/proof/statistics/random.h>
-#include <gonio/brdf/bsdf/sampler.h>
+#include <gonio/brdf/proof/samplers/stack_bsdf.h>
 
 namespace gonio::proof {
 namespace {
@@ -27,12 +28,17 @@ std::shared_ptr<const BrdfTable> shared_table() { return {std::shared_ptr<void>(
 // Few angles, so that the methods differ between them.
 const StackGrid& coarse_grid() {
   static const StackGrid grid = [] {
-    StackOptions options;
+    BsdfOptions options;
+    options.interpolation = Interpolation::displacement;
     options.incident = 7;
+    options.meridians = options.parallels = 40;
+    options.budget = 480 * 1024;
     return build_stack(specular_table(), options);
   }();
   return grid;
 }
+
+StackBsdf coarse(Interpolation interpolation) { return StackBsdf({coarse_grid(), interpolation, Storage::float32, {}}, shared_table()); }
 
 constexpr double theta_i = 0.65;  // half way between two of the seven
 
@@ -82,8 +88,8 @@ TEST(Coherence, CountsTearsAndFolds) {
 }
 
 TEST(Coherence, OnlyAMixtureIsTorn) {
-  const Sampler displacement(shared_table(), coarse_grid(), Interpolation::displacement);
-  const Sampler mixture(shared_table(), coarse_grid(), Interpolation::mixture);
+  const StackBsdf displacement = coarse(Interpolation::displacement);
+  const StackBsdf mixture = coarse(Interpolation::mixture);
   const Coherence d = measure_coherence(subject_of(displacement), theta_i), m = measure_coherence(subject_of(mixture), theta_i);
   EXPECT_EQ(d.tears, 0u);
   EXPECT_EQ(d.folds, 0u);
@@ -94,7 +100,7 @@ TEST(Coherence, OnlyAMixtureIsTorn) {
 // What coherence buys: quasi-Monte Carlo converges faster than 1/sqrt(N) through displacement, and no
 // better than random points through a method that decides by a random number of its own.
 TEST(Coherence, DisplacementKeepsTheSlope) {
-  const Sampler displacement(shared_table(), coarse_grid(), Interpolation::displacement);
+  const StackBsdf displacement = coarse(Interpolation::displacement);
   const Convergence c = measure_convergence(subject_of(displacement), theta_i);
   EXPECT_LT(c.qmc_slope, -0.85);
   EXPECT_NEAR(c.mc_slope, -0.5, 0.08);
@@ -109,7 +115,7 @@ TEST(Coherence, RandomMixtureAndRejectionLoseTheSlope) {
   while (angles[k + 1] < theta_i) ++k;
   const float alpha = (static_cast<float>(theta_i) - angles[k]) / (angles[k + 1] - angles[k]);
   Random random(7);
-  const Sampler mixture(shared_table(), coarse_grid(), Interpolation::mixture);
+  const StackBsdf mixture = coarse(Interpolation::mixture);
   Subject random_mixture = subject_of(mixture);
   random_mixture.sample = [&](const glm::vec3& wi, const glm::vec2& u) -> std::optional<BsdfSample> {
     const auto s = nearest.sample(angles[random() < alpha ? k + 1 : k], u.x, u.y);
@@ -119,7 +125,7 @@ TEST(Coherence, RandomMixtureAndRejectionLoseTheSlope) {
   EXPECT_GT(measure_convergence(random_mixture, theta_i, 12).qmc_slope, -0.65);
 
   // The first try is the point itself, the others are random.
-  const Sampler displacement(shared_table(), coarse_grid(), Interpolation::displacement);
+  const StackBsdf displacement = coarse(Interpolation::displacement);
   double peak = 0;
   for (int n = 0; n < 20000; ++n)
     peak = std::max<double>(peak, displacement.sample({std::sin(static_cast<float>(theta_i)), 0, std::cos(static_cast<float>(theta_i))}, random.pair())->pdf);

@@ -1,6 +1,6 @@
 // The page of `gonio compare` in a headless browser; skipped without one.
 
-#include <gonio/tools/page/write_page.h>
+#include "tools/page/write_page.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
-#include <gonio/tools/render/compare/compare_runs.h>
+#include "tools/render/compare/compare_runs.h"
 
 #include <gonio/fitting/model/synth.h>
 #include <gonio/mapping/base/error.h>
-#include <gonio/tools/render/image/difference.h>
-#include <gonio/tools/render/scene/read_scene.h>
+#include "tools/render/image/difference.h"
+#include "tools/render/scene/read_scene.h"
 #include <gtest/gtest.h>
 
 #include <algorithm>

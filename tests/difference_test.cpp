@@ -1,4 +1,4 @@
-#include <gonio/tools/render/image/difference.h>
+#include "tools/render/image/difference.h"
 
 #include <gtest/gtest.h>
 

@@ -62,13 +62,13 @@ TEST(DiskImageFile, RefusesWithReason) {
   EXPECT_NE(message(folder / "text.exr").find("no OpenEXR file"), std::string::npos);
   EXPECT_NE(message(folder / "none.exr").find("none.exr: no such file"), std::string::npos);
   StackFile stack;
-  stack.diagrams.theta_i = {0.0, 1.0};
+  stack.bsdf.diagrams.theta_i = {0.0, 1.0};
   DiagramGrid grid;
   grid.azimuth = Azimuth::half;
   grid.phi = {0, pi<double>};
   grid.r = {0, 1};
   grid.density = {1, 1, 1, 1};
-  stack.diagrams.diagrams = {grid, grid};
+  stack.bsdf.diagrams.diagrams = {grid, grid};
   save_stack(folder / "stack.exr", stack);
   EXPECT_NE(message(folder / "stack.exr").find("a stack file"), std::string::npos);
 }

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include <gonio/brdf/proof/samplers/baseline.h>
-#include <gonio/brdf/batch/batch_sampler.h>
 #include <gonio/brdf/build/compact/fit_compact.h>
 #include <gonio/brdf/proof/gallery.h>
 #include <gonio/fitting/fit/fit.h>
@@ -21,7 +20,7 @@
 #include <gonio/fitting/model/model.h>
 #include <gonio/mapping/light/emission.h>
 #include <gonio/mapping/light/exr/light_exr.h>
-#include <gonio/tests/batch_subject.h>
+#include "tests/batch_subject.h"
 
 namespace gonio::proof {
 namespace {
@@ -44,19 +43,19 @@ void expect_sound(const std::string& what, const Subject& subject, double theta_
 /// Everything that a table is sampled by.
 void expect_all_sound(const std::string& name, const std::shared_ptr<const BrdfTable>& from, const std::vector<double>& angles) {
   const CompactFit fit = fit_compact(*from).best();
-  const Sampler sampler(from, fit.diagrams, Interpolation::blend, Storage::packed16);
-  const Sampler floats(from, fit.diagrams, Interpolation::blend, Storage::float32);
-  const CompactBsdf compact = fit.bsdf();
-  const BatchSampler batch(sampler), compact_batch(compact);
+  BsdfData in_floats = fit.data;
+  in_floats.storage = Storage::float32;
+  const Bsdf bsdf(fit.data, from), compact(fit.data);
+  const StackBsdf plain(fit.data, from), floats(in_floats, from), plain_compact(fit.data);
   for (const double theta_i : angles) {
-    expect_sound(name + ", 16 bits", subject_of(sampler), theta_i);
-    expect_sound(name + ", 32 bits", subject_of(floats), theta_i);
-    expect_sound(name + ", compact", subject_of(compact), theta_i);
-    expect_sound(name + ", lanes", subject_of(batch), theta_i);
-    expect_sound(name + ", batch", batch_subject(batch), theta_i);
-    expect_sound(name + ", compact lanes", subject_of(compact_batch), theta_i);
-    expect_sound(name + ", compact batch", batch_subject(compact_batch), theta_i);
-    const DirectionScan directions = scan_directions(subject_of(sampler), theta_i);
+    expect_sound(name + ", plain, 16 bits", subject_of(plain), theta_i);
+    expect_sound(name + ", plain, 32 bits", subject_of(floats), theta_i);
+    expect_sound(name + ", plain, compact", subject_of(plain_compact), theta_i);
+    expect_sound(name + ", one", subject_of(bsdf), theta_i);
+    expect_sound(name + ", batch", batch_subject(bsdf), theta_i);
+    expect_sound(name + ", compact, one", subject_of(compact), theta_i);
+    expect_sound(name + ", compact, batch", batch_subject(compact), theta_i);
+    const DirectionScan directions = scan_directions(subject_of(bsdf), theta_i);
     EXPECT_LE(directions.largest_weight, 50) << name << ", " << theta_i / degree << " degrees, " << directions.where;
     EXPECT_EQ(directions.without_pdf, 0) << name << ", " << theta_i / degree << " degrees";
   }
@@ -182,11 +181,10 @@ TEST(Edges, DirectionsWithoutDensityAreFound) {
 // No float in, whatever it is, does more than return nothing.
 TEST(Edges, HostileFloats) {
   const auto from = table("specular");
-  const CompactFit fit = fit_compact(*from).best();
-  const Sampler sampler(from, fit.diagrams, Interpolation::blend, Storage::packed16);
-  const CompactBsdf compact = fit.bsdf();
-  const BatchSampler batch(sampler), compact_batch(compact);
-  const Subject subjects[] = {subject_of(sampler), subject_of(compact), subject_of(batch), batch_subject(batch), subject_of(compact_batch), batch_subject(compact_batch)};
+  const BsdfData data = fit_compact(*from).best().data;
+  const Bsdf bsdf(data, from), compact(data);
+  const StackBsdf plain(data, from), plain_compact(data);
+  const Subject subjects[] = {subject_of(plain), subject_of(plain_compact), subject_of(bsdf), batch_subject(bsdf), subject_of(compact), batch_subject(compact)};
   using Limits = std::numeric_limits<float>;
   const float hostile[] = {Limits::quiet_NaN(), Limits::infinity(), -Limits::infinity(), Limits::max(), -Limits::max(),
                            Limits::denorm_min(), -Limits::denorm_min(), Limits::min(), 0.0f, -0.0f, -1.0f, 2.0f, 1e-30f, 1e30f};
@@ -206,21 +204,6 @@ TEST(Edges, HostileFloats) {
             const bool sound = !s || (s->pdf > 0 && std::isfinite(s->wo.x + s->wo.y + s->wo.z + s->weight.x));
             ASSERT_TRUE(sound) << first << ' ' << a << ' ' << second << ' ' << b;
           }
-  }
-}
-
-// f_r of a self-contained sampler stays what it is next to the horizon, where W pdf / cos theta_o would grow without bound.
-TEST(Edges, SelfContainedValuesAtTheHorizon) {
-  const CompactFit fit = fit_compact(*table("specular")).best();
-  const CompactBsdf compact = fit.bsdf();
-  const BatchSampler batch(compact);
-  const glm::vec3 wi(std::sin(0.7f), 0, std::cos(0.7f));
-  const float above = compact.eval(wi, {-1, 0, 1e-3f}).y;
-  for (const float z : {1e-4f, 1e-7f, 1e-30f, std::numeric_limits<float>::denorm_min()}) {
-    const glm::vec3 wo(-1, 0, z);
-    EXPECT_LE(compact.eval(wi, wo).y, 1.01f * above) << z;
-    EXPECT_LE(batch.eval(wi, wo).y, 1.01f * above) << z;
-    EXPECT_LE(batch_subject(batch).f_r(wi, wo).y, 1.01f * above) << z;
   }
 }
 

@@ -1,9 +1,9 @@
-#include <gonio/tools/render/image/environment.h>
+#include "tools/render/image/environment.h"
 
 #include <gonio/brdf/table/table.h>
 #include <gonio/mapping/base/error.h>
 #include <gonio/mapping/charts/hemisphere.h>
-#include <gonio/tools/render/trace/sobol.h>
+#include "tools/render/trace/sobol.h"
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,6 +1,6 @@
 #include <gonio/mapping/base/error.h>
+#include <gonio/mapping/base/format_number.h>
 #include <gonio/mapping/light/files/eulumdat.h>
-#include <gonio/mapping/light/files/text_scanner.h>
 #include <gtest/gtest.h>
 
 #include <chrono>

@@ -1,9 +1,9 @@
-#include <gonio/tools/render/image/exr_image.h>
+#include "tools/render/image/exr_image.h"
 
 #include <gonio/brdf/ndf/image/disk_image_file.h>
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/mapping/base/error.h>
-#include <gonio/tests/table_files.h>
+#include "tests/table_files.h"
 #include <gtest/gtest.h>
 
 namespace gonio {
@@ -50,9 +50,9 @@ TEST(ExrImage, OtherFilesOfGonioAreNamed) {
   const test::TemporaryFolder folder;
   DiagramGrid diagram{Azimuth::half, {0, pi<double>}, {0, 1}, std::vector<double>(4, 1.0)};
   StackFile stack;
-  stack.diagrams.theta_i = {0};
-  stack.diagrams.diagrams = {diagram};
-  stack.colour = Colour({0}, 2, std::vector<glm::vec3>(2, glm::vec3(0.5f)));
+  stack.bsdf.diagrams.theta_i = {0};
+  stack.bsdf.diagrams.diagrams = {diagram};
+  stack.bsdf.colour = Colour({0}, 2, std::vector<glm::vec3>(2, glm::vec3(0.5f)));
   save_stack(folder / "stack.exr", stack);
   EXPECT_NE(message_of(folder / "stack.exr").find("stack.exr: content: found a stack file, expected a picture"), std::string::npos)
       << message_of(folder / "stack.exr");

@@ -55,8 +55,9 @@ TEST(Fault, NoFloatingPointExceptionWhileSampling) {
 StackFile small_stack() {
   StackFile file;
   file.name = "fault";
+  file.bsdf.interpolation = Interpolation::displacement, file.bsdf.storage = Storage::float32;
   for (const auto& entry : proof::gallery_stacks())
-    if (entry.name == "specular") file.diagrams = Stack<float>(entry.grid, Interpolation::displacement).grid();
+    if (entry.name == "specular") file.bsdf.diagrams = Stack<float>(entry.grid, Interpolation::displacement).grid();
   return file;
 }
 

@@ -1,7 +1,7 @@
-#include <gonio/tools/render/trace/film.h>
+#include "tools/render/trace/film.h"
 
-#include <gonio/tests/table_files.h>
-#include <gonio/tools/render/scene/read_scene.h>
+#include "tests/table_files.h"
+#include "tools/render/scene/read_scene.h"
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,9 +1,9 @@
 #include <gonio/brdf/build/compact/fit_compact.h>
 #include <gonio/brdf/proof/measure.h>
-#include <gonio/brdf/bsdf/sampler.h>
+#include <gonio/brdf/proof/samplers/stack_bsdf.h>
 #include <gonio/fitting/model/synth.h>
 #include <gonio/mapping/base/error.h>
-#include <gonio/tests/table_files.h>
+#include "tests/table_files.h"
 
 #include <gtest/gtest.h>
 
@@ -29,20 +29,22 @@ std::shared_ptr<const BrdfTable> glossy() {
 
 // Measured by the report's own measure, not by the estimates of the optimiser.
 TEST(FitCompact, ReachesTheVarianceAskedFor) {
-  CompactOptions options;
+  BsdfOptions options;
   options.max_variance = 0.01;
   const CompactFit fit = fit_compact(*glossy(), options).best();
-  EXPECT_EQ(fit.bytes, fit.bsdf().bytes());
+  EXPECT_EQ(fit.data.interpolation, Interpolation::blend);
+  EXPECT_EQ(fit.data.storage, Storage::packed16);
+  EXPECT_EQ(fit.bytes, PackedStack(fit.data.diagrams).bytes() + fit.data.colour.bytes());
   EXPECT_LE(fit.quality.worst_relvar, 0.01);
-  const Sampler sampler(glossy(), fit.diagrams, Interpolation::blend);
+  const Bsdf bsdf(fit.data, glossy());
   for (const double theta : {2.0, 10.0, 30.0, 50.0, 70.0, 80.0})
-    EXPECT_LE(proof::measure(proof::subject_of(sampler), theta * degree).relvar, 0.011) << theta;
+    EXPECT_LE(proof::measure(proof::subject_of(bsdf), theta * degree).relvar, 0.011) << theta;
 }
 
 TEST(FitCompact, MoreVarianceTakesFewerBytes) {
   std::size_t before = SIZE_MAX;
   for (const double variance : {0.001, 0.01, 0.1}) {
-    CompactOptions options;
+    BsdfOptions options;
     options.max_variance = variance;
     const std::size_t bytes = fit_compact(*glossy(), options).best().bytes;
     EXPECT_LT(bytes, before) << variance;
@@ -53,7 +55,7 @@ TEST(FitCompact, MoreVarianceTakesFewerBytes) {
 TEST(FitCompact, StaysWithinTheBudget) {
   double before = 1e9;
   for (const std::size_t budget : {4 * 1024, 64 * 1024}) {
-    CompactOptions options;
+    BsdfOptions options;
     options.max_variance.reset();
     options.budget = budget;
     const CompactFit fit = fit_compact(*glossy(), options).best();
@@ -66,7 +68,7 @@ TEST(FitCompact, StaysWithinTheBudget) {
 
 // What cannot be had is not pretended.
 TEST(FitCompact, SaysWhatItMissed) {
-  CompactOptions options;
+  BsdfOptions options;
   options.max_variance = 1e-6;
   options.budget = 8 * 1024;
   const CompactFit fit = fit_compact(*glossy(), options).best();
@@ -103,7 +105,7 @@ TEST(FitCompact, ProgressGrowsInSmallSteps) {
 }
 
 TEST(FitCompact, DiffuseIsAFewHundredBytes) {
-  CompactOptions options;
+  BsdfOptions options;
   options.max_variance = 0.01;
   const CompactFit fit = fit_compact(*synthetic("lambert:albedo=0.5/0.4/0.3"), options).best();
   EXPECT_LT(fit.bytes, 500u);
@@ -113,15 +115,15 @@ TEST(FitCompact, DiffuseIsAFewHundredBytes) {
 // Near the normal, a narrow lobe leaves its neighbours behind soonest: in the chart of outgoing directions its
 // angles crowd there.
 TEST(FitCompact, NearMirrorNeedsAnglesNearTheNormal) {
-  CompactOptions options;
+  BsdfOptions options;
   options.max_variance = 0.05;
   options.budget = 4 << 20;
-  options.candidates = {Chart::outgoing};
+  options.chart = Chart::outgoing;
   const auto table = std::make_shared<const BrdfTable>(
       BrdfTable(MerlTable(synthesize_merl(parse_model("ggx:alpha=0.06,F0=0.9")), {}), {"made", "made", "merl", "", 0, {}}));
   const CompactFit fit = fit_compact(*table, options).best();
   std::size_t low = 0, middle = 0;
-  for (const double theta : fit.diagrams.theta_i) {
+  for (const double theta : fit.data.diagrams.theta_i) {
     if (theta < 15 * degree) ++low;
     if (theta >= 35 * degree && theta < 50 * degree) ++middle;
   }
@@ -130,21 +132,21 @@ TEST(FitCompact, NearMirrorNeedsAnglesNearTheNormal) {
 
 TEST(FitCompact, TheSameEveryTime) {
   const CompactFit a = fit_compact(*glossy()).best(), b = fit_compact(*glossy()).best();
-  ASSERT_EQ(a.diagrams.theta_i, b.diagrams.theta_i);
-  for (std::size_t k = 0; k < a.diagrams.diagrams.size(); ++k)
-    EXPECT_EQ(a.diagrams.diagrams[k].density, b.diagrams.diagrams[k].density);
-  EXPECT_EQ(a.colour.values(), b.colour.values());
+  ASSERT_EQ(a.data.diagrams.theta_i, b.data.diagrams.theta_i);
+  for (std::size_t k = 0; k < a.data.diagrams.diagrams.size(); ++k)
+    EXPECT_EQ(a.data.diagrams.diagrams[k].density, b.data.diagrams.diagrams[k].density);
+  EXPECT_EQ(a.data.colour.values(), b.data.colour.values());
 }
 
 TEST(CompactCurve, BytesGoWhereTheMaterialIsSeen) {
-  CompactOptions grazing;
+  BsdfOptions grazing;
   grazing.incidence = std::vector<double>(90, 0.0);
   for (std::size_t k = 60; k < 80; ++k) grazing.incidence[k] = 0.05;
   const auto share_below_45 = [](const std::vector<CompactFit>& curve) {
     std::size_t low = 0, all = 0;
     for (const CompactFit& fit : curve) {
-      for (const double theta : fit.diagrams.theta_i) low += theta < 45 * degree;
-      all += fit.diagrams.theta_i.size();
+      for (const double theta : fit.data.diagrams.theta_i) low += theta < 45 * degree;
+      all += fit.data.diagrams.theta_i.size();
     }
     return static_cast<double>(low) / static_cast<double>(all);
   };
@@ -157,7 +159,7 @@ TEST(FitCompact, ErrorFallsWithTheBudget) {
   const auto narrow = synthetic("ggx:alpha=0.08,F0=0.3");
   double least = 1e9;
   for (const std::size_t budget : {1024, 2048, 4096, 8192}) {
-    CompactOptions options;
+    BsdfOptions options;
     options.max_variance.reset();
     options.budget = budget;
     const CompactFit fit = fit_compact(*narrow, options).best();
@@ -177,11 +179,11 @@ TEST(FitCompact, KeepsTheAlbedoAtTheNormal) {
 TEST(FitCompact, BlackTable) {
   const CompactFit fit = fit_compact(*synthetic("lambert:albedo=0")).best();
   EXPECT_LT(fit.bytes, 2000u);
-  EXPECT_EQ(fit.bsdf().eval({0, 0, 1}, {0, 0, 1}), glm::vec3(0));
+  EXPECT_EQ(Bsdf(fit.data).eval({0, 0, 1}, {0, 0, 1}), glm::vec3(0));
 }
 
 TEST(FitCompact, RefusesBadOptions) {
-  CompactOptions options;
+  BsdfOptions options;
   options.max_variance = 0;
   EXPECT_THROW(fit_compact(*glossy(), options), Error);
   options.max_variance = 0.01, options.budget = 100;

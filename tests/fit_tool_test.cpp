@@ -5,7 +5,7 @@
 #include <gonio/brdf/table/table.h>
 #include <gonio/fitting/model/synth.h>
 #include <gonio/mapping/base/error.h>
-#include <gonio/tests/table_files.h>
+#include "tests/table_files.h"
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -321,7 +321,7 @@ TEST_F(FitToolTest, ReportOfAMixture) {
   write_table("a.mbsdf", one_lobe);
   expect_ok("convert a.mbsdf a.exr --incident 3 --grid 6x6");
   StackFile stack = load_stack(path("a.exr"));
-  stack.interpolation = Interpolation::mixture;
+  stack.bsdf.interpolation = Interpolation::mixture;
   save_stack(path("mixture.exr"), stack);
   expect_ok("report a.exr mixture.exr -o report");
   const auto report = nlohmann::json::parse(read_bytes(path("report/report.json")));

@@ -1,9 +1,8 @@
 // The adapters that docs/integrate.md shows, as the renderers would call them.
 
-#include <gonio/brdf/table/albedo.h>
-#include <gonio/brdf/bsdf/material_hints.h>
-#include <gonio/docs/examples/mitsuba_bsdf.h>
-#include <gonio/docs/examples/pbrt_bxdf.h>
+#include <gonio/brdf/build/make_bsdf.h>
+#include "docs/examples/mitsuba_bsdf.h"
+#include "docs/examples/pbrt_bxdf.h"
 #include <gonio/fitting/model/synth.h>
 #include <gtest/gtest.h>
 
@@ -19,22 +18,17 @@ std::shared_ptr<const BrdfTable> table_of(const char* description) {
       GridTable(synthesize_grid(parse_model(description), 32, 48)), BrdfTable::Info{});
 }
 
-std::shared_ptr<const Sampler> sampler_of(const char* description) {
-  StackOptions options;
-  options.incident = 24;
-  options.meridians = options.parallels = 24;
-  return std::make_shared<const Sampler>(table_of(description), options);
+Bsdf make_material() {
+  BsdfOptions options;
+  options.interpolation = Interpolation::displacement, options.storage = Storage::float32;
+  options.incident = options.meridians = options.parallels = 24;
+  return make_bsdf(table_of("ggx:alpha=0.3,F0=0.4/0.3/0.2+lambert:albedo=0.3/0.2/0.1"), options);
 }
 
 /// Coloured, and built once.
-std::shared_ptr<const Sampler> material() {
-  static const auto sampler = sampler_of("ggx:alpha=0.3,F0=0.4/0.3/0.2+lambert:albedo=0.3/0.2/0.1");
-  return sampler;
-}
-
-GonioMaterial pbrt_material() {
-  static const auto data = std::make_shared<const GonioData>(GonioData{*material()});
-  return GonioMaterial(data);
+const Bsdf& material() {
+  static const Bsdf bsdf = make_material();
+  return bsdf;
 }
 
 struct Direction {
@@ -53,10 +47,12 @@ TEST(Integrate, PbrtBxDFIsAPointer) {
   static_assert(std::is_trivially_copyable_v<GonioBxDF> &&
                 std::is_trivially_destructible_v<GonioBxDF>);
   static_assert(sizeof(GonioBxDF) == sizeof(void*));
-  auto data = std::make_shared<const GonioData>(GonioData{*material()});
-  const std::weak_ptr<const GonioData> alive = data;
+  auto table = table_of("lambert:albedo=0.5");
+  const std::weak_ptr<const BrdfTable> alive = table;
+  BsdfOptions coarse;
+  coarse.incident = coarse.meridians = coarse.parallels = 4;
   {
-    const GonioMaterial owner(std::move(data));
+    const GonioMaterial owner(make_bsdf(std::move(table), coarse));
     pbrt::ScratchBuffer buffer;
     for (int hit = 0; hit < 3; ++hit) {
       EXPECT_TRUE(pbrt::GetBSDF(owner, buffer)
@@ -68,7 +64,7 @@ TEST(Integrate, PbrtBxDFIsAPointer) {
 }
 
 TEST(Integrate, PbrtDrawsAndValuesAgree) {
-  const GonioMaterial owner = pbrt_material();
+  const GonioMaterial owner(material());
   pbrt::ScratchBuffer buffer;
   const GonioBxDF& bxdf = pbrt::GetBSDF(owner, buffer);
   const auto mode = pbrt::TransportMode::Radiance;
@@ -131,7 +127,7 @@ TEST(Integrate, MitsubaDrawsAndValuesAgree) {
 }
 
 TEST(Integrate, AlbedoIsTheMeanWeight) {
-  const GonioMaterial owner = pbrt_material();
+  const GonioMaterial owner(material());
   pbrt::ScratchBuffer buffer;
   const GonioBxDF& pbrt_side = pbrt::GetBSDF(owner, buffer);
   const GonioBSDF mitsuba_side(material(), true);
@@ -153,27 +149,6 @@ TEST(Integrate, AlbedoIsTheMeanWeight) {
       EXPECT_NEAR(weight_sum / n / mitsuba_side.eval_diffuse_reflectance(si)[0], 1, 0.01) << theta;
     }
   }
-}
-
-TEST(MaterialHints, AlbedoOfTheTable) {
-  const MaterialHints hints = MaterialHints::of(*material());
-  const auto table = table_of("ggx:alpha=0.3,F0=0.4/0.3/0.2+lambert:albedo=0.3/0.2/0.1");
-  for (const float degrees : {0.0f, 13.0f, 40.0f, 65.0f, 80.0f}) {
-    const float theta = degrees * pi<float> / 180;
-    const glm::vec3 expected = directional_albedo(*table, theta), found = hints.albedo(theta);
-    for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c] / expected[c], 1, 0.01) << degrees;
-  }
-  EXPECT_EQ(hints.albedo(1.6f), glm::vec3(0.0f));
-  EXPECT_EQ(hints.albedo(-0.1f), hints.albedo(0.0f));
-}
-
-TEST(MaterialHints, RoughnessOfKnownLobes) {
-  EXPECT_NEAR(MaterialHints::of(*sampler_of("lambert:albedo=0.5")).roughness(),
-              std::tan(pi<float> / 8), 0.02);
-  const float rough = MaterialHints::of(*sampler_of("ggx:alpha=0.4,F0=1")).roughness();
-  const float glossy = MaterialHints::of(*sampler_of("ggx:alpha=0.15,F0=1")).roughness();
-  EXPECT_NEAR(rough, 0.32, 0.02);
-  EXPECT_NEAR(glossy, 0.15, 0.02);
 }
 
 }  // namespace

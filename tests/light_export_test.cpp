@@ -2,12 +2,12 @@
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
 #include <gonio/mapping/base/error.h>
+#include <gonio/mapping/base/format_number.h>
 #include <gonio/mapping/light/emission.h>
 #include <gonio/mapping/light/exr/light_exr.h>
 #include <gonio/mapping/light/texture/octahedral.h>
 #include <gonio/mapping/light/photometry.h>
 #include <gonio/mapping/light/polar_svg.h>
-#include <gonio/mapping/light/files/text_scanner.h>
 #include <gtest/gtest.h>
 
 #include <cstdio>

@@ -1,8 +1,8 @@
-#include <gonio/tools/render/mesh/mesh.h>
+#include "tools/render/mesh/mesh.h"
 
 #include <gonio/mapping/base/error.h>
 #include <gonio/mapping/charts/hemisphere.h>
-#include <gonio/tests/table_files.h>
+#include "tests/table_files.h"
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 

@@ -1,4 +1,4 @@
-#include <gonio/tools/page/write_page.h>
+#include "tools/page/write_page.h"
 
 #include <gtest/gtest.h>
 

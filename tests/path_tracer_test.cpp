@@ -1,9 +1,9 @@
-#include <gonio/brdf/build/compact/fit_compact.h>
-#include <gonio/tools/render/trace/path_tracer.h>
+#include <gonio/brdf/build/make_bsdf.h>
+#include "tools/render/trace/path_tracer.h"
 
 #include <gonio/fitting/model/synth.h>
-#include <gonio/tests/table_files.h>
-#include <gonio/tools/render/trace/film.h>
+#include "tests/table_files.h"
+#include "tools/render/trace/film.h"
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -30,12 +30,12 @@ std::shared_ptr<const BrdfTable> glossy_table() {
   return table;
 }
 
-const Sampler& glossy_sampler() {
-  static const Sampler sampler(glossy_table());
-  return sampler;
+const Bsdf& glossy_bsdf() {
+  static const Bsdf bsdf = make_bsdf(glossy_table());
+  return bsdf;
 }
 
-std::shared_ptr<const Bsdf> glossy() { return make_bsdf(glossy_sampler()); }
+std::shared_ptr<const Scatter> glossy() { return make_scatter(glossy_bsdf()); }
 
 std::shared_ptr<const BrdfTable> rgl_table() {
   std::vector<Problem> problems;
@@ -91,12 +91,12 @@ GoniometricLight down_light(const glm::vec3& position, float scale = 1) {
 }
 
 /// A ball on a white plate; both fill the view.
-Scene ball(Light light, std::shared_ptr<const Bsdf> bsdf) {
+Scene ball(Light light, std::shared_ptr<const Scatter> bsdf) {
   Scene scene;
   scene.camera = {{0, -6, 4}, {0, 0, 0.7f}, {0, 0, 1}, 20 * degree, 10, 10};
   scene.environment = environment(light);
   scene.materials.push_back({"ball", std::move(bsdf), true, nullptr, {}, {}});
-  scene.materials.push_back({"plate", make_bsdf(LambertSampler(glm::vec3(0.7f))), true, nullptr, {}, {}});
+  scene.materials.push_back({"plate", make_scatter(LambertSampler(glm::vec3(0.7f))), true, nullptr, {}, {}});
   scene.objects = {object("sphere", placed_at({0, 0, 1}), 0), object("square", placed_at({0, 0, 0}, 20), 1)};
   return scene;
 }
@@ -156,7 +156,7 @@ void expect_strategies_agree(const Scene& scene, const std::string& name) {
   EXPECT_LT(mis.error, 0.01 * mis.mean) << name;  // the comparison says something
 }
 
-void expect_strategies_agree(const std::shared_ptr<const Bsdf>& bsdf, const std::string& name) {
+void expect_strategies_agree(const std::shared_ptr<const Scatter>& bsdf, const std::string& name) {
   for (const Case& light : lights) expect_strategies_agree(ball(light.light, bsdf), name + ", " + light.name);
 }
 
@@ -165,7 +165,7 @@ TEST(PathTracer, WhiteFurnaceOfALambertTable) {
   Scene scene;
   scene.camera = {{1, -2, 3}, {0, 0, 0}, {0, 0, 1}, 20 * degree, 16, 16};
   scene.environment = environment(constant);
-  scene.materials.push_back({"grey", make_bsdf(Sampler(grey_table())), true, nullptr, {}, {}});
+  scene.materials.push_back({"grey", make_scatter(make_bsdf(grey_table())), true, nullptr, {}, {}});
   scene.objects.push_back(object("square", placed_at({0, 0, 0}, 10), 0));
   for (const Strategy strategy : strategies) {
     RenderOptions options;
@@ -179,7 +179,7 @@ TEST(PathTracer, WhiteFurnaceOfALambertTable) {
 }
 
 TEST(PathTracer, StrategiesAgreeOnEveryMethod) {
-  StackOptions small;
+  BsdfOptions small;
   small.incident = small.meridians = small.parallels = 16;
   MethodBuilder builder(glossy_table(), {}, small);
   for (const SamplingMethod method : sampling_methods)
@@ -191,9 +191,10 @@ TEST(PathTracer, StrategiesAgreeOnTheRglChain) {
 }
 
 TEST(PathTracer, StrategiesAgreeOnCompactBsdfs) {
-  CompactOptions options;
+  BsdfOptions options;
+  options.f_r = BsdfValue::colour;
   options.max_variance = 0.01;
-  expect_strategies_agree(make_bsdf(fit_compact(*glossy_table(), options).best().bsdf()), "compact");
+  expect_strategies_agree(make_scatter(make_bsdf(glossy_table(), options)), "compact");
 }
 
 TEST(PathTracer, StrategiesAgreeOnAreaLights) {
@@ -214,7 +215,7 @@ TEST(PathTracer, StrategiesAgreeOnAreaLights) {
 /// A sampler whose weight and pdf() are those of a density 5 % too high.
 class WrongPdf {
  public:
-  explicit WrongPdf(Sampler sampler) : sampler_(std::move(sampler)) {}
+  explicit WrongPdf(Bsdf sampler) : sampler_(std::move(sampler)) {}
   std::optional<BsdfSample> sample(const glm::vec3& wi, const glm::vec2& u) const noexcept {
     auto s = sampler_.sample(wi, u);
     if (s) s->pdf *= 1.05f, s->weight /= 1.05f;
@@ -224,11 +225,11 @@ class WrongPdf {
   glm::vec3 eval(const glm::vec3& wi, const glm::vec3& wo) const noexcept { return sampler_.eval(wi, wo); }
 
  private:
-  Sampler sampler_;
+  Bsdf sampler_;
 };
 
 TEST(PathTracer, NegativeControlAPdfThatIsFivePercentOffIsSeen) {
-  const auto wrong = make_bsdf(WrongPdf(glossy_sampler()));
+  const auto wrong = make_scatter(WrongPdf(glossy_bsdf()));
   // Not the small spot: there MIS draws from the light, nearly always, and is right to.
   for (const Light light : {constant, gradient}) {
     const Scene scene = ball(light, wrong);
@@ -253,7 +254,7 @@ TEST(PathTracer, EnergyIsNotGained) {
 TEST(PathTracer, GoniometricLightIlluminatesByTheInverseSquare) {
   Scene scene;
   scene.camera = {{0, 0, 3}, {0, 0, 0}, {0, 1, 0}, 0.1f * degree, 4, 4};
-  scene.materials.push_back({"grey", make_bsdf(LambertSampler(glm::vec3(0.5f))), true, nullptr, {}, {}});
+  scene.materials.push_back({"grey", make_scatter(LambertSampler(glm::vec3(0.5f))), true, nullptr, {}, {}});
   scene.objects.push_back(object("square", glm::mat4(1.0f), 0));
   scene.lights.push_back(down_light({0, 0, 5}));
   for (const Strategy strategy : strategies) EXPECT_NEAR(mean_luminance(scene, 4, strategy), 0.5 / pi<double> * 100 / 25, 1e-3) << to_string(strategy);
@@ -269,7 +270,7 @@ TEST(PathTracer, AWeakLightIsNotLostInTheSky) {
   Scene scene;
   scene.camera = {{0, 0, 3}, {0, 0, 0}, {0, 1, 0}, 0.1f * degree, 4, 4};
   scene.environment = environment(constant);
-  scene.materials.push_back({"grey", make_bsdf(LambertSampler(glm::vec3(0.5f))), true, nullptr, {}, {}});
+  scene.materials.push_back({"grey", make_scatter(LambertSampler(glm::vec3(0.5f))), true, nullptr, {}, {}});
   scene.objects.push_back(object("square", placed_at({0, 0, 0}, 1000), 0));
   scene.lights.push_back(down_light({0, 0, 1}, 0.001f));
   for (const Strategy strategy : strategies) EXPECT_NEAR(mean_luminance(scene, 1024, strategy), 0.5 + 0.5 / pi<double> * 0.1, 2e-3) << to_string(strategy);
@@ -279,7 +280,7 @@ TEST(PathTracer, AWeakLightIsNotLostInTheSky) {
 TEST(PathTracer, RussianRouletteKeepsTheMean) {
   Scene scene;
   scene.camera = {{0.1f, 0.2f, 0.3f}, {1, 0.4f, 0.2f}, {0, 0, 1}, 60 * degree, 8, 8};
-  scene.materials.push_back({"grey", make_bsdf(LambertSampler(glm::vec3(0.5f))), true, nullptr, {}, {}});
+  scene.materials.push_back({"grey", make_scatter(LambertSampler(glm::vec3(0.5f))), true, nullptr, {}, {}});
   for (const glm::vec3 side : {glm::vec3(1, 0, 0), glm::vec3(0, 1, 0), glm::vec3(0, 0, 1)})
     for (const float sign : {-1.0f, 1.0f}) {
       const glm::vec3 inwards = -sign * side, across(side.y, side.z, side.x);

@@ -1,7 +1,7 @@
-#include <gonio/tools/render/scene/read_scene.h>
+#include "tools/render/scene/read_scene.h"
 
 #include <gonio/mapping/base/error.h>
-#include <gonio/tests/table_files.h>
+#include "tests/table_files.h"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // Runs the verbs render and compare of the program GONIO_TOOL as a user does.
 
 #include <gonio/fitting/model/model.h>
-#include <gonio/tests/table_files.h>
-#include <gonio/tools/render/image/exr_image.h>
+#include "tests/table_files.h"
+#include "tools/render/image/exr_image.h"
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 

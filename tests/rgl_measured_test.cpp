@@ -1,5 +1,6 @@
 // Real materials through the writer and back: slow, since stacks are built.
 
+#include <gonio/brdf/bsdf/bsdf.h>
 #include <gonio/brdf/build/compact/fit_compact.h>
 #include <gonio/brdf/formats/rgl/rgl_write.h>
 #include <gonio/brdf/table/validate.h>
@@ -71,7 +72,7 @@ class MeasuredRgl : public Measured {};
 TEST_P(MeasuredRgl, StackToRgl) {
   const auto& [name, bounds] = GetParam();
   const BrdfTable table = load_table(test_data() / "rgl" / (std::string(name) + "_rgb.bsdf"));
-  const CompactBsdf bsdf = fit_compact(table).best().bsdf();
+  const Bsdf bsdf(fit_compact(table).best().data);
   expect_close(
       name, [&](const glm::vec3& wi, const glm::vec3& wo) { return bsdf.eval(wi, wo); }, bounds);
 }

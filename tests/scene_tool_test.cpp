@@ -4,7 +4,8 @@
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/brdf/build/budget/incidence_profile.h>
 #include <gonio/fitting/model/synth.h>
-#include <gonio/tests/table_files.h>
+#include <gonio/mapping/stack/packed_stack.h>
+#include "tests/table_files.h"
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -122,7 +123,7 @@ TEST_F(SceneToolTest, AMaterialThatFailsCostsTheOthersNothing) {
   EXPECT_EQ(run.code, 1);
   EXPECT_NE(run.err.find("gonio convert: 2 of 3 inputs failed: none.mbsdf: no such file; bad.mbsdf: "), std::string::npos) << run.err;
   EXPECT_NE(run.out.find("written: stacks/a.exr\nwritten: stacks/scene-budget.json\n"), std::string::npos) << run.out;
-  EXPECT_GT(load_compact(path("stacks/a.exr")).bytes(), 0u);
+  EXPECT_GT(load_bsdf(path("stacks/a.exr")).bytes(), 0u);
   EXPECT_FALSE(std::filesystem::exists(path("stacks/bad.exr")));
   const json result = summary();
   ASSERT_EQ(result["materials"].size(), 1u);
@@ -150,9 +151,10 @@ TEST_F(SceneToolTest, SplitsTheBytesWhereTheyCount) {
   for (const json& material : result["materials"]) {
     const std::string name = material["name"];
     EXPECT_NE(out.find("\n" + name + " "), std::string::npos) << out;
-    const CompactBsdf bsdf = load_compact(path("stacks") / material["file"].get<std::string>());
-    EXPECT_EQ(bsdf.bytes(), material["bytes"]) << name;
+    const StackFile file = load_stack(path("stacks") / material["file"].get<std::string>());
+    EXPECT_EQ(PackedStack(file.bsdf.diagrams).bytes() + file.bsdf.colour.bytes(), material["bytes"]) << name;
     EXPECT_EQ(load_stack(path("stacks/" + name + ".exr")).name, name);
+    EXPECT_TRUE(Bsdf(file.bsdf).self_contained()) << name;
     bytes += material["bytes"].get<std::size_t>();
     even_bytes += material["even_split"]["bytes"].get<std::size_t>();
     EXPECT_DOUBLE_EQ(material["contribution"], material["share"].get<double>() * material["relvar"].get<double>());

@@ -1,4 +1,4 @@
-#include <gonio/tools/render/trace/sobol.h>
+#include "tools/render/trace/sobol.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include <gonio/tools/stability/measure_row.h>
+#include "tools/stability/measure_row.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include <gonio/brdf/proof/statistics/random.h>
 #include <gonio/mapping/diagram/diagram.cpp>  // for Diagram<OperationCounter>
 #include <gonio/mapping/numeric/monotone_root.h>
-#include <gonio/tools/stability/figures.h>
+#include "tools/stability/figures.h"
 
 namespace gonio {
 namespace {

@@ -1,4 +1,4 @@
-#include <gonio/tools/render/image/tone_map.h>
+#include "tools/render/image/tone_map.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // Runs the program GONIO_TOOL as a user does.
 
 #include <gonio/brdf/table/albedo.h>
-#include <gonio/brdf/build/stack/build_stack.h>
+#include <gonio/brdf/build/stack/bsdf_options.h>
 #include <gonio/mapping/base/bytes.h>
 #include <gonio/brdf/exr/stack_file.h>
-#include <gonio/tests/table_files.h>
+#include "tests/table_files.h"
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -154,9 +154,9 @@ TEST_F(ToolTest, HelpHasExamples) {
     EXPECT_TRUE(contains(execute("--help").out, "\n  " + verb + " ")) << verb;
   }
   const std::string help = execute("convert --help").out;
-  const StackOptions defaults;
+  const BsdfOptions defaults;
   EXPECT_TRUE(contains(help, "--incident INT=" + std::to_string(defaults.incident))) << help;
-  EXPECT_TRUE(contains(help, "=" + std::to_string(defaults.bytes / 1024) + "KiB")) << help;
+  EXPECT_TRUE(contains(help, "=" + std::to_string(defaults.budget / 1024) + "KiB")) << help;
   EXPECT_TRUE(contains(
       help, "[" + std::to_string(defaults.meridians) + "x" + std::to_string(defaults.parallels)))
       << help;
@@ -376,7 +376,7 @@ TEST_F(ToolTest, ConvertEachIntoAFolder) {
   EXPECT_TRUE(contains(run.out, "written: out/a.exr\n")) << run.out;
   EXPECT_FALSE(contains(run.out, "bad")) << run.out;
   expect_ok("convert a.mbsdf b.exr --incident 3 --grid 5x6");
-  EXPECT_EQ(load_stack(path("out/a.exr")).diagrams.diagrams[1].density, load_stack(path("b.exr")).diagrams.diagrams[1].density);
+  EXPECT_EQ(load_stack(path("out/a.exr")).bsdf.diagrams.diagrams[1].density, load_stack(path("b.exr")).bsdf.diagrams.diagrams[1].density);
   EXPECT_EQ(load_stack(path("out/c.exr")).source, "c.bsdf");
   EXPECT_FALSE(fs::exists(path("out/bad.exr")));
 
@@ -617,7 +617,7 @@ TEST_F(ToolTest, InfoOfAStack) {
   }
   expect_near(printed_albedo(text, 30), glm::vec3(0.5f), 0.01f);
   const StackFile file = load_stack(path("a.exr"));
-  for (const DiagramGrid& grid : file.diagrams.diagrams) {
+  for (const DiagramGrid& grid : file.bsdf.diagrams.diagrams) {
     EXPECT_LE(grid.phi.size(), 5u);
     EXPECT_LE(grid.r.size(), 6u);
   }
@@ -658,9 +658,9 @@ TEST_F(ToolTest, StackSurvivesBitByBit) {
       EXPECT_EQ(x.diagrams[k].density, y.diagrams[k].density);
     }
   };
-  same(a.diagrams, b.diagrams);
-  same(a.diagrams, Stack<float>(a.diagrams, Interpolation::displacement).grid());
-  EXPECT_EQ(a.colour.values(), b.colour.values());
+  same(a.bsdf.diagrams, b.bsdf.diagrams);
+  same(a.bsdf.diagrams, Stack<float>(a.bsdf.diagrams, Interpolation::displacement).grid());
+  EXPECT_EQ(a.bsdf.colour.values(), b.bsdf.colour.values());
 }
 
 TEST_F(ToolTest, StackToTableIsRefused) {
@@ -933,9 +933,9 @@ TEST_F(ToolTest, ValidateDoubtsAStack) {
   write("a.mbsdf", sample_mbsdf());
   expect_ok("convert a.mbsdf a.exr --incident 3");
   StackFile file = load_stack(path("a.exr"));
-  file.colour = {};
-  file.diagrams.theta_i = {0, 0.1, 0.2};
-  for (double& density : file.diagrams.diagrams[1].density) density *= 2;
+  file.bsdf.colour = {};
+  file.bsdf.diagrams.theta_i = {0, 0.1, 0.2};
+  for (double& density : file.bsdf.diagrams.diagrams[1].density) density *= 2;
   save_stack(path("b.exr"), file);
   const Outcome run = execute("validate b.exr");
   EXPECT_EQ(run.code, 0);
@@ -951,10 +951,10 @@ TEST_F(ToolTest, ValidateDoubtsAStackThatReflectsTooMuch) {
   expect_ok("convert a.mbsdf a.exr --incident 3");
   EXPECT_EQ(execute("validate a.exr").out.find("albedo"), std::string::npos);
   StackFile file = load_stack(path("a.exr"));
-  std::vector<glm::vec3> values = file.colour.values();
-  const std::size_t cells = values.size() / file.colour.theta_i().size();
+  std::vector<glm::vec3> values = file.bsdf.colour.values();
+  const std::size_t cells = values.size() / file.bsdf.colour.theta_i().size();
   for (std::size_t k = 0; k < cells; ++k) values[k].g *= 3;  // of the first layer alone
-  file.colour = Colour(file.colour.theta_i(), file.colour.side(), values);
+  file.bsdf.colour = Colour(file.bsdf.colour.theta_i(), file.bsdf.colour.side(), values);
   save_stack(path("b.exr"), file);
   const Outcome run = execute("validate b.exr");
   EXPECT_EQ(run.code, 0);

@@ -11,9 +11,7 @@ namespace gonio {
 
 struct Bsdf::State {
   State(const BsdfData& data, std::shared_ptr<const BrdfTable> from)
-      : layout(sampled_stack(data)), colour(from ? Colour() : data.colour, layout), table(std::move(from)), storage(data.storage) {
-    if (!table && data.colour.empty()) throw Error("BSDF: f_r: found neither a table nor a colour, expected one of them");
-  }
+      : layout(sampled_stack(data)), colour(from ? Colour() : data.colour, layout), table(std::move(from)), storage(data.storage) {}
 
   const BatchColour* own_colour() const noexcept { return table ? nullptr : &colour; }
   bool draw(const glm::vec3& wi, const glm::vec2& u, BsdfSample& out) const noexcept {
@@ -39,7 +37,10 @@ glm::vec3 get_at(ConstArrays3 a, std::size_t k) noexcept { return {a.x[k], a.y[k
 
 }  // namespace
 
-Bsdf::Bsdf(const BsdfData& data, std::shared_ptr<const BrdfTable> table) : state_(std::make_shared<const State>(data, std::move(table))) {}
+Bsdf::Bsdf(const BsdfData& data, std::shared_ptr<const BrdfTable> table) {
+  if (!table && data.colour.empty()) throw Error("BSDF: f_r: found neither a table nor a colour, expected one of them");
+  state_ = std::make_shared<const State>(data, std::move(table));  // which draws
+}
 
 std::optional<BsdfSample> Bsdf::sample(const glm::vec3& wi, const glm::vec2& u) const noexcept {
   BsdfSample s;

@@ -1,10 +1,9 @@
 #pragma once
 
-#include <gonio/brdf/bsdf/material_hints.h>
-#include <gonio/brdf/bsdf/sampler.h>
+#include <gonio/brdf/bsdf/bsdf.h>
 
 #include <cmath>
-#include <memory>
+#include <utility>
 
 #include "mitsuba_interface.h"  // in Mitsuba: <mitsuba/render/bsdf.h>
 
@@ -12,8 +11,7 @@
 // known, wo drawn. Values contain the cosine.
 class GonioBSDF final : public mitsuba::BSDF {
  public:
-  GonioBSDF(std::shared_ptr<const gonio::Sampler> sampler, bool two_sided)
-      : sampler_(std::move(sampler)), hints_(gonio::MaterialHints::of(*sampler_)), two_sided_(two_sided) {
+  GonioBSDF(gonio::Bsdf bsdf, bool two_sided) : bsdf_(std::move(bsdf)), two_sided_(two_sided) {
     m_flags = mitsuba::GlossyReflection | mitsuba::FrontSide | (two_sided ? mitsuba::BackSide : 0u);
   }
 
@@ -22,7 +20,7 @@ class GonioBSDF final : public mitsuba::BSDF {
       const mitsuba::Point2f& u) const override {
     const bool below = si.wi.z < 0;
     if (below && !two_sided_) return {};
-    const auto s = sampler_->sample(up(si.wi, below), {u.x, u.y});
+    const auto s = bsdf_.sample(up(si.wi, below), {u.x, u.y});
     if (!s) return {};  // weight and pdf 0: the path ends
     const float sign = below ? -1.0f : 1.0f;
     mitsuba::BSDFSample bs;
@@ -36,22 +34,22 @@ class GonioBSDF final : public mitsuba::BSDF {
                          const mitsuba::Vector3f& wo) const override {
     const bool below = si.wi.z < 0;
     if (below && !two_sided_) return {};
-    return spectrum(sampler_->eval(up(si.wi, below), up(wo, below)) * std::abs(wo.z));
+    return spectrum(bsdf_.eval(up(si.wi, below), up(wo, below)) * std::abs(wo.z));
   }
 
   mitsuba::Float pdf(const mitsuba::SurfaceInteraction& si,
                      const mitsuba::Vector3f& wo) const override {
     const bool below = si.wi.z < 0;
-    return below && !two_sided_ ? 0.0f : sampler_->pdf(up(si.wi, below), up(wo, below));
+    return below && !two_sided_ ? 0.0f : bsdf_.pdf(up(si.wi, below), up(wo, below));
   }
 
   // What Mitsuba's integrators write as albedo: all that is reflected, not the diffuse part alone.
   mitsuba::Spectrum eval_diffuse_reflectance(const mitsuba::SurfaceInteraction& si) const override {
     if (si.wi.z < 0 && !two_sided_) return {};
-    return spectrum(hints_.albedo(std::acos(std::fmin(std::abs(si.wi.z), 1.0f))));
+    return spectrum(bsdf_.albedo(std::acos(std::fmin(std::abs(si.wi.z), 1.0f))));
   }
 
-  mitsuba::Float roughness() const { return hints_.roughness(); }  // as alpha
+  mitsuba::Float roughness() const { return bsdf_.roughness(); }  // as alpha
 
  private:
   static glm::vec3 up(const mitsuba::Vector3f& w, bool below) {
@@ -59,7 +57,6 @@ class GonioBSDF final : public mitsuba::BSDF {
   }
   static mitsuba::Spectrum spectrum(const glm::vec3& rgb) { return {{rgb.r, rgb.g, rgb.b}}; }
 
-  std::shared_ptr<const gonio::Sampler> sampler_;
-  gonio::MaterialHints hints_;
+  gonio::Bsdf bsdf_;
   bool two_sided_;
 };

@@ -1,18 +1,11 @@
 #pragma once
 
-#include <gonio/brdf/bsdf/material_hints.h>
-#include <gonio/brdf/bsdf/sampler.h>
+#include <gonio/brdf/bsdf/bsdf.h>
 
 #include <cmath>
-#include <memory>
+#include <utility>
 
 #include "pbrt_interface.h"  // in pbrt: <pbrt/materials.h>
-
-// What all hits of a material share.
-struct GonioData {
-  gonio::Sampler sampler;
-  gonio::MaterialHints hints = gonio::MaterialHints::of(sampler);
-};
 
 // A material of gonio as a BxDF of pbrt-v4. There, wo is the known direction and wi the drawn one:
 // the other way round than in gonio. Made at every hit and never destroyed: a pointer, nothing
@@ -20,20 +13,20 @@ struct GonioData {
 class GonioBxDF {
  public:
   GonioBxDF() = default;  // pbrt allocates first and assigns then
-  explicit GonioBxDF(const GonioData* data) : data_(data) {}
+  explicit GonioBxDF(const gonio::Bsdf* bsdf) : bsdf_(bsdf) {}
 
   pbrt::BxDFFlags Flags() const { return pbrt::BxDFFlags::GlossyReflection; }
 
   // Two-sided: below the surface both directions are turned over. Nothing is transmitted.
   pbrt::SampledSpectrum f(pbrt::Vector3f wo, pbrt::Vector3f wi, pbrt::TransportMode) const {
-    return spectrum(data_->sampler.eval(up(wo, wo), up(wi, wo)));  // 0 if one is below
+    return spectrum(bsdf_->eval(up(wo, wo), up(wi, wo)));  // 0 if one is below
   }
 
   std::optional<pbrt::BSDFSample> Sample_f(
       pbrt::Vector3f wo, pbrt::Float, pbrt::Point2f u, pbrt::TransportMode,
       pbrt::BxDFReflTransFlags what = pbrt::BxDFReflTransFlags::All) const {
     if (!reflects(what)) return {};
-    const auto s = data_->sampler.sample(up(wo, wo), {u.x, u.y});
+    const auto s = bsdf_->sample(up(wo, wo), {u.x, u.y});
     if (!s) return {};
     const pbrt::Vector3f wi{s->wo.x, s->wo.y, s->wo.z};
     return pbrt::BSDFSample{spectrum(s->weight * s->pdf / s->wo.z), wo.z < 0 ? -wi : wi, s->pdf,
@@ -42,15 +35,15 @@ class GonioBxDF {
 
   pbrt::Float PDF(pbrt::Vector3f wo, pbrt::Vector3f wi, pbrt::TransportMode,
                   pbrt::BxDFReflTransFlags what = pbrt::BxDFReflTransFlags::All) const {
-    return reflects(what) ? data_->sampler.pdf(up(wo, wo), up(wi, wo)) : 0;
+    return reflects(what) ? bsdf_->pdf(up(wo, wo), up(wi, wo)) : 0;
   }
 
   // Without random numbers, where BxDF::rho of pbrt averages draws.
   pbrt::SampledSpectrum rho(pbrt::Vector3f wo) const {
-    return spectrum(data_->hints.albedo(std::acos(std::fmin(pbrt::AbsCosTheta(wo), 1.0f))));
+    return spectrum(bsdf_->albedo(std::acos(std::fmin(pbrt::AbsCosTheta(wo), 1.0f))));
   }
 
-  pbrt::Float Roughness() const { return data_->hints.roughness(); }  // as alpha
+  pbrt::Float Roughness() const { return bsdf_->roughness(); }  // as alpha
   void Regularize() {}  // measured: wider lobes would be another material
 
  private:
@@ -64,20 +57,20 @@ class GonioBxDF {
   // In pbrt: RGBAlbedoSpectrum or, where f_r is above 1, RGBUnboundedSpectrum at the wavelengths.
   static pbrt::SampledSpectrum spectrum(const glm::vec3& rgb) { return {{rgb.r, rgb.g, rgb.b}}; }
 
-  const GonioData* data_ = nullptr;
+  const gonio::Bsdf* bsdf_ = nullptr;
 };
 
-// Lives as long as the scene, and the data with it.
+// Lives as long as the scene, and the Bsdf with it.
 class GonioMaterial {
  public:
   using BxDF = GonioBxDF;
-  explicit GonioMaterial(std::shared_ptr<const GonioData> data) : data_(std::move(data)) {}
+  explicit GonioMaterial(gonio::Bsdf bsdf) : bsdf_(std::move(bsdf)) {}
 
   template <class TextureEvaluator>
   GonioBxDF GetBxDF(TextureEvaluator, pbrt::MaterialEvalContext, pbrt::SampledWavelengths&) const {
-    return GonioBxDF(data_.get());
+    return GonioBxDF(&bsdf_);
   }
 
  private:
-  std::shared_ptr<const GonioData> data_;
+  gonio::Bsdf bsdf_;
 };

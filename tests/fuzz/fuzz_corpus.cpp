@@ -1,6 +1,7 @@
 #include <gonio/brdf/ndf/image/disk_image_file.h>
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/fitting/model/model.h>
+#include <gonio/mapping/stack/packed_stack.h>
 
 #include <filesystem>
 #include <fstream>
@@ -49,15 +50,17 @@ int main(int argc, char** argv) {
 
   gonio::StackFile stack;
   stack.name = "corpus";
-  stack.diagrams = gonio::Stack<float>(small_stack(), gonio::Interpolation::displacement).grid();
+  stack.bsdf.interpolation = gonio::Interpolation::displacement;
+  stack.bsdf.storage = gonio::Storage::float32;
+  stack.bsdf.diagrams = gonio::Stack<float>(small_stack(), gonio::Interpolation::displacement).grid();
   fs::create_directories(folder / "stack");
   gonio::save_stack(folder / "stack" / "bare.exr", stack);
-  stack.colour = gonio::Colour({0, 0.5f, 1}, 4, std::vector<glm::vec3>(24, glm::vec3(0.5f)));
+  stack.bsdf.colour = gonio::Colour({0, 0.5f, 1}, 4, std::vector<glm::vec3>(24, glm::vec3(0.5f)));
   gonio::save_stack(folder / "stack" / "colour.exr", stack);
-  for (auto& diagram : stack.diagrams.diagrams) diagram = stack.diagrams.diagrams.front();
-  stack.interpolation = gonio::Interpolation::blend;
-  stack.storage = gonio::Storage::packed16;
-  stack.diagrams = gonio::PackedStack(stack.diagrams).grid();
+  for (auto& diagram : stack.bsdf.diagrams.diagrams) diagram = stack.bsdf.diagrams.diagrams.front();
+  stack.bsdf.interpolation = gonio::Interpolation::blend;
+  stack.bsdf.storage = gonio::Storage::packed16;
+  stack.bsdf.diagrams = gonio::PackedStack(stack.bsdf.diagrams).grid();
   gonio::save_stack(folder / "stack" / "packed.exr", stack);
 
   fs::create_directories(folder / "image");

@@ -1,5 +1,5 @@
 #include <gonio/mapping/base/error.h>
-#include <gonio/tools/convert/scene_manifest.h>
+#include "tools/convert/scene_manifest.h"
 
 #include <cmath>
 #include <cstdlib>

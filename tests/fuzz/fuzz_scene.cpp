@@ -1,6 +1,6 @@
 #include <gonio/fitting/model/parse_json.h>
 #include <gonio/mapping/base/error.h>
-#include <gonio/tools/render/scene/read_scene.h>
+#include "tools/render/scene/read_scene.h"
 
 #include <cmath>
 #include <cstdlib>

@@ -1,6 +1,10 @@
 #include "tools/render/trace/world.h"
 
+#if GONIO_EMBREE == 4
+#include <embree4/rtcore.h>
+#else
 #include <embree3/rtcore.h>
+#endif
 
 #include <algorithm>
 #include <cmath>
@@ -22,6 +26,23 @@ RTCRay make_ray(const glm::vec3& o, const glm::vec3& d, float distance) {
   ray.mask = ~0u;
   return ray;
 }
+
+// Embree 4 has defaults where Embree 3 has a context.
+#if GONIO_EMBREE == 4
+void find_hit(RTCScene scene, RTCRayHit& query) { rtcIntersect1(scene, &query); }
+void find_occluder(RTCScene scene, RTCRay& ray) { rtcOccluded1(scene, &ray); }
+#else
+void find_hit(RTCScene scene, RTCRayHit& query) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(scene, &context, &query);
+}
+void find_occluder(RTCScene scene, RTCRay& ray) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(scene, &context, &ray);
+}
+#endif
 
 }  // namespace
 
@@ -66,12 +87,10 @@ World::World(const Scene& scene) : scene_(scene), embree_(std::make_unique<Embre
 World::~World() = default;
 
 std::optional<Hit> World::intersect(const glm::vec3& origin, const glm::vec3& direction) const noexcept {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
   RTCRayHit query{};
   query.ray = make_ray(origin, direction, std::numeric_limits<float>::infinity());
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(embree_->scene, &context, &query);
+  find_hit(embree_->scene, query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
   const TriangleMesh& mesh = *scene_.objects[query.hit.geomID].mesh;
   const auto& t = mesh.triangles[query.hit.primID];
@@ -93,10 +112,8 @@ std::optional<Hit> World::intersect(const glm::vec3& origin, const glm::vec3& di
 }
 
 bool World::occluded(const glm::vec3& origin, const glm::vec3& direction, float distance) const noexcept {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
   RTCRay ray = make_ray(origin, direction, distance);
-  rtcOccluded1(embree_->scene, &context, &ray);
+  find_occluder(embree_->scene, ray);
   return ray.tfar < 0;
 }
 
