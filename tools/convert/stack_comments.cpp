@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include <gonio/mapping/base/error.h>
+
 #include "tools/cli/number.h"
 
 namespace gonio {
@@ -20,7 +21,8 @@ std::string stack_comments(const std::string& source, const std::string& made) {
 void add_comment(std::string& comments, const std::string& line) {
   const bool plain = std::none_of(line.begin(), line.end(), [](unsigned char c) { return std::iscntrl(c) != 0; });
   if (line.empty() || !plain)
-    throw Error(std::string("--comment: found ") + (line.empty() ? "no text" : "control characters") + ", expected a line of text");
+    throw Error(std::string("--comment: found ") + (line.empty() ? "no text" : "control characters") +
+                ", expected a line of text");
   comments += (comments.empty() ? "" : "\n") + line;
 }
 

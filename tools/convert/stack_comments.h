@@ -1,8 +1,8 @@
 #pragma once
 
-#include <gonio/brdf/build/compact/compact_quality.h>
-
 #include <string>
+
+#include <gonio/brdf/build/compact/compact_quality.h>
 
 namespace gonio {
 

@@ -11,7 +11,7 @@
 #include <gonio/mapping/base/atomic_file.h>
 #include <gonio/mapping/base/did_you_mean.h>
 #include <gonio/mapping/base/error.h>
-#include "tools/cli/data_folder.h"
+#include "tools/render/data_folder.h"
 #include "tools/cli/number.h"
 #include "tools/cli/options.h"
 #include "tools/cli/progress.h"
