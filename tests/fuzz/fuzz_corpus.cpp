@@ -7,8 +7,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "../light_cases.h"
-#include "../table_files.h"
+#include "tests/support/light_cases.h"
+#include "tests/support/table_files.h"
 
 // Writes a few small valid files of each format to the folders that the fuzzers start from:
 // fuzz_corpus FOLDER.

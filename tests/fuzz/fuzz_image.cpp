@@ -1,7 +1,7 @@
 #include <gonio/brdf/ndf/image/disk_image_file.h>
 #include <gonio/mapping/base/error.h>
 
-#include "memory_file.h"
+#include "tests/fuzz/memory_file.h"
 
 // Bytes to the image of a normal distribution.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "memory_file.h"
+#include "tests/fuzz/memory_file.h"
 
 // Bytes to the manifest of `convert --scene`: shares that add up to 1. (Its files are looked for, not read.)
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,7 +1,7 @@
 #include <gonio/brdf/formats/mbsdf.h>
 #include <gonio/mapping/base/error.h>
 
-#include "evaluate.h"
+#include "tests/fuzz/evaluate.h"
 
 // Bytes to an MBSDF file; what is usable is made a table and evaluated.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,4 +1,4 @@
-#include "mesh.h"
+#include "tests/fuzz/mesh.h"
 
 // Bytes to a mesh; the corpus is of OBJ files.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

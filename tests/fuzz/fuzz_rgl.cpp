@@ -1,7 +1,7 @@
 #include <gonio/brdf/formats/rgl/rgl.h>
 #include <gonio/mapping/base/error.h>
 
-#include "evaluate.h"
+#include "tests/fuzz/evaluate.h"
 
 // Bytes to an RGL file; what is usable is made a table, evaluated and sampled.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

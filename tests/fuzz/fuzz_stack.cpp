@@ -2,7 +2,7 @@
 #include <gonio/mapping/base/error.h>
 #include <gonio/mapping/stack/packed_stack.h>
 
-#include "memory_file.h"
+#include "tests/fuzz/memory_file.h"
 
 namespace {
 

@@ -1,0 +1,20 @@
+# Builds and runs a project that has gonio as a part, in a C++ standard of its own, with GLM and Highway alone and warnings as
+# errors. cmake -DSOURCE_DIR= -DSTANDARD= -DWORK= -DCXX= -P subproject_test.cmake
+cmake_minimum_required(VERSION 3.25)
+file(REMOVE_RECURSE ${WORK})
+foreach(package Boost OpenEXR Ceres Eigen3 nlohmann_json embree TBB CLI11)
+  list(APPEND none -DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
+endforeach()
+function(run)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(NOT status EQUAL 0)
+    message(FATAL_ERROR "${output}\nfailed (${status}): ${ARGN}")
+  endif()
+endfunction()
+run(${CMAKE_COMMAND} -G Ninja -S ${SOURCE_DIR}/tests/package/subproject -B ${WORK} -DGONIO_SOURCE_DIR=${SOURCE_DIR}
+  -DCMAKE_CXX_STANDARD=${STANDARD} -DCMAKE_CXX_COMPILER=${CXX} "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Wpedantic -Werror" ${none})
+run(${CMAKE_COMMAND} --build ${WORK})
+run(${WORK}/subproject)
+if(EXISTS ${WORK}/gonio/tools OR EXISTS ${WORK}/gonio/fitting)
+  message(FATAL_ERROR "The subproject has more of gonio than mapping and brdf")
+endif()
