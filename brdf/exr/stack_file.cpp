@@ -136,6 +136,8 @@ StackFile load(const std::string& file) {
          std::to_string(stack_file_version) + " (a stack file of this library)");
   result.name = attribute<Imf::StringAttribute, std::string>(file, first, "gonio:name");
   result.source = attribute<Imf::StringAttribute, std::string>(file, first, "gonio:source");
+  if (first.find("comments") != first.end())
+    result.comments = attribute<Imf::StringAttribute, std::string>(file, first, "comments");
   result.bsdf.diagrams.chart = choice(file, first, "gonio:chart", charts, Chart::outgoing);
   result.bsdf.interpolation = choice(file, first, "gonio:interpolation", interpolations, Interpolation::displacement);
   result.bsdf.storage = choice(file, first, "gonio:storage", storages, Storage::float32);
@@ -205,6 +207,7 @@ void save_stack(const std::filesystem::path& path, const StackFile& file) {
   first.insert("gonio:version", Imf::StringAttribute(GONIO_VERSION));
   first.insert("gonio:name", Imf::StringAttribute(file.name));
   first.insert("gonio:source", Imf::StringAttribute(file.source));
+  if (!file.comments.empty()) first.insert("comments", Imf::StringAttribute(file.comments));
   first.insert("gonio:chart", Imf::StringAttribute(to_string(file.bsdf.diagrams.chart)));
   first.insert("gonio:interpolation", Imf::StringAttribute(to_string(file.bsdf.interpolation)));
   first.insert("gonio:storage", Imf::StringAttribute(to_string(file.bsdf.storage)));

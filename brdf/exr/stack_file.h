@@ -14,6 +14,7 @@ struct StackFile {
   BsdfData bsdf;       ///< densities normalised; without colours f_r is that of the table
   std::string name;    ///< of the material
   std::string source;  ///< file the stack was made of, without its folder; empty if unknown
+  std::string comments = {};  ///< how it was made, who measured it, its licence: lines for people; may be empty
 };
 
 /// Version of the layout that save_stack() writes; load_stack() reads this one only.

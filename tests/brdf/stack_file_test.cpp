@@ -94,6 +94,7 @@ StackFile make_packed_file() {
     grid.diagrams.push_back(std::move(diagram));
   }
   StackFile file = make_file();
+  file.comments = "made by hand\nCC0, \xc3\xa9";
   file.bsdf.diagrams = PackedStack(grid).grid();
   file.bsdf.interpolation = Interpolation::blend;
   file.bsdf.storage = Storage::packed16;
@@ -196,6 +197,7 @@ TEST_F(StackFileTest, RoundTripIsBitExact) {
     EXPECT_EQ(saved.bsdf.colour.values(), loaded.bsdf.colour.values());
     EXPECT_EQ(saved.name, loaded.name);
     EXPECT_EQ(saved.source, loaded.source);
+    EXPECT_EQ(saved.comments, loaded.comments);
     EXPECT_EQ(saved.bsdf.diagrams.chart, loaded.bsdf.diagrams.chart);
     EXPECT_EQ(saved.bsdf.interpolation, loaded.bsdf.interpolation);
     EXPECT_EQ(saved.bsdf.storage, loaded.bsdf.storage);

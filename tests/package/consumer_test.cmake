@@ -36,6 +36,9 @@ if(NOT installed STREQUAL expected)
   message(FATAL_ERROR "The installed files are not those of tests/package/install_manifest.txt")
 endif()
 
+# What comes with the program is found there.
+run(${prefix}/bin/gonio render --size 16x16 --samples 1 -o ${work}/iris.png)
+
 # consume(NAME option...): builds and runs a consumer. `libraries` becomes what its link command names,
 # without gonio's own, and `headers` all files that it was compiled from.
 function(consume name)

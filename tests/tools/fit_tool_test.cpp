@@ -211,7 +211,7 @@ TEST_F(FitToolTest, ModelFilesAreInputs) {
   const glm::vec3 exact = model.eval(wi, wo), read = load_table(path("c.binary")).eval(wi, wo);
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(read[c], exact[c], 0.01f * exact[c]);
   const std::string info = expect_ok("info fit.json");
-  for (const char* part : {"model of fitted lobes", "2 lobes, 1 of them specular", "ggx:alpha=0.4", "albedo"}) {
+  for (const char* part : {"model of analytic lobes", "2 lobes, 1 of them specular", "ggx:alpha=0.4", "albedo"}) {
     EXPECT_TRUE(contains(info, part)) << part << "\n" << info;
   }
   EXPECT_TRUE(contains(expect_ok("validate fit.json"), "fit.json: ok"));

@@ -79,6 +79,8 @@ TEST_F(RenderTool, Compare) {
   EXPECT_EQ(run("--material grey.mbsdf --methods rgl -o d", "compare"), 1);
   EXPECT_NE(text("err").find("--methods: found rgl"), std::string::npos) << text("err");
   EXPECT_EQ(run("--material grey.mbsdf --seconds 0 -o d", "compare"), 1);
+  EXPECT_EQ(run("-o d", "compare"), 1);
+  EXPECT_NE(text("err").find("SCENE: found none, expected SCENE.json or --material FILE"), std::string::npos) << text("err");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "d"));
 }
 
@@ -128,7 +130,6 @@ TEST_F(RenderTool, ErrorsAreOneLineAndLeaveNoFile) {
   test::write_file(folder_ / "manifest.json", R"({"format": "gonio scene", "version": 1, "materials": []})");
   test::write_file(folder_ / "fit.json", to_json(parse_model("ggx:alpha=0.3+lambert:albedo=0.5")));
   const std::pair<const char*, const char*> cases[] = {
-      {"", "SCENE: found none, expected SCENE.json or --material FILE"},
       {"s.json --material grey.mbsdf", "SCENE: found one and --material"},
       {"s.json", "s.json: objects: found []"},
       {"manifest.json", "manifest.json: found a manifest of gonio convert --scene (docs/scene.md), expected a scene of gonio render (docs/render.md)"},

@@ -244,6 +244,8 @@ TEST_F(ToolTest, OptionsWithoutEffectAreRefused) {
   expect_error("convert a.mbsdf b.binary --phi-d 90", {"--phi-d", "90"});
   expect_error("convert a.exr b.exr --incident 9", {"--incident"});
   expect_error("convert a.exr b.exr --missing fill", {"--missing"});
+  expect_error("convert a.mbsdf b.mbsdf --comment text", {"--comment", "only a stack file has comments"});
+  expect_error("convert a.mbsdf b --max-variance 0.1 --comment text", {"--comment", "only a stack file has comments"});
 }
 
 // ---------------------------------------------------------------- outputs
@@ -623,6 +625,28 @@ TEST_F(ToolTest, InfoOfAStack) {
   }
 }
 
+TEST_F(ToolTest, CommentsSayHowAStackWasMade) {
+  write("a.mbsdf", sample_mbsdf());
+  const std::string made = execute("convert a.mbsdf a.exr --max-variance 0.01 --chart half --comment 'measured by us' --comment CC0").out;
+  const std::string comments = load_stack(path("a.exr")).comments;
+  EXPECT_EQ(comments.rfind("made of a.mbsdf by gonio " GONIO_VERSION " convert\n--max-variance 0.01 --chart half: relvar at most ", 0), 0u) << comments;
+  EXPECT_TRUE(contains(comments, " %\nmeasured by us\nCC0")) << comments;
+  const std::size_t from = comments.find("relvar");  // the figures are those that convert prints
+  EXPECT_TRUE(contains(made, comments.substr(from, comments.find('\n', from) - from) + "\n")) << made;
+  const std::string text = execute("info a.exr").out;
+  EXPECT_TRUE(contains(text, "comments    made of a.mbsdf by gonio ")) << text;
+  EXPECT_TRUE(contains(text, "\n            measured by us\n            CC0\n")) << text;
+  EXPECT_EQ(nlohmann::json::parse(execute("info --json a.exr").out)["comments"], comments);
+  expect_ok("convert a.exr b.exr");
+  EXPECT_EQ(read_bytes(path("a.exr")), read_bytes(path("b.exr")));
+  expect_ok("convert a.exr c.exr --comment 'and more'");
+  EXPECT_EQ(load_stack(path("c.exr")).comments, comments + "\nand more");
+  expect_ok("convert a.mbsdf hand.exr --incident 3 --grid 5x6");
+  EXPECT_TRUE(contains(load_stack(path("hand.exr")).comments, "sizes by hand, errors not measured: at most 5 meridians, 6 parallels, 3 incident angles"));
+  expect_error("convert a.exr d.exr --comment ''", {"--comment: found no text"});
+  expect_error("convert a.exr d.exr --comment 'one\ntwo'", {"--comment: found control characters"});
+}
+
 // ---------------------------------------------------------------- round trips
 
 TEST_F(ToolTest, MerlToMerlIsByteIdentical) {
@@ -723,6 +747,18 @@ TEST_F(ToolTest, SynthIsTheModel) {
     expect_ok(std::string("validate ") + name);
     EXPECT_EQ(execute(std::string("validate ") + name).out, std::string(name) + ": ok\n");
   }
+}
+
+TEST_F(ToolTest, SynthWritesTheModelItself) {
+  expect_ok("synth ggx:alpha=0.3+lambert:albedo=0.5 -o a.json");
+  expect_ok("synth a.json -o b.json");
+  EXPECT_EQ(read_bytes(path("a.json")), read_bytes(path("b.json")));
+  EXPECT_TRUE(contains(execute("info a.json").out, "description ggx:alpha=0.3,"));
+  expect_ok("synth a.json -o a.mbsdf");
+  expect_ok("synth ggx:alpha=0.3+lambert:albedo=0.5 -o b.mbsdf");
+  EXPECT_TRUE(read_bytes(path("a.mbsdf")) == read_bytes(path("b.mbsdf")));
+  for (const char* option : {"--noise 0.1", "--seed 2", "--measured-to 80"})
+    expect_error(std::string("synth default -o c.json ") + option, {"a model has no cells"});
 }
 
 TEST_F(ToolTest, SynthNoiseIsSeeded) {

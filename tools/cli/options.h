@@ -28,6 +28,7 @@ struct StackRequest {
   std::optional<double> max_variance;                       ///< of --max-variance
   std::optional<std::size_t> budget;                        ///< of --budget
   std::string front;                                        ///< of --front
+  std::vector<std::string> comments;                        ///< of --comment, a line each
   std::optional<Interpolation> interpolation;               ///< of --interpolation, by hand
   BsdfOptions by_hand;
 };

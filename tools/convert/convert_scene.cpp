@@ -9,6 +9,7 @@
 #include "tools/cli/input.h"
 #include "tools/cli/progress.h"
 #include "tools/convert/scene_manifest.h"
+#include "tools/convert/stack_comments.h"
 #include "tools/cli/written.h"
 
 #include <algorithm>
@@ -173,6 +174,7 @@ void convert_scene(const std::filesystem::path& path, std::size_t bytes, const s
     file.bsdf = std::move(fit.data);
     file.name = scene[k].name;
     file.source = scene[k].file.filename().string();
+    file.comments = stack_comments(file.source, "--scene " + path.filename().string() + " --budget " + std::to_string(bytes) + ": " + describe(fit.quality));
     save_stack(out / (scene[k].name + ".exr"), file);
   }
   write_stream_atomically(out / "scene-budget.json", [&](std::ostream& stream) { stream << json.dump(1, ' ', false, ordered_json::error_handler_t::replace) << '\n'; });

@@ -8,6 +8,7 @@
 #include "tools/cli/check_not_input.h"
 #include "tools/cli/check_writable.h"
 #include "tools/convert/convert_stack.h"
+#include "tools/convert/stack_comments.h"
 #include "tools/measure/size_front.h"
 #include "tools/cli/input.h"
 #include "tools/cli/number.h"
@@ -28,22 +29,29 @@ namespace {
 
 constexpr int colour_side = 16;
 
-StackFile named(const BrdfTable& table, const std::filesystem::path& in) {
+/// @param made how it was made: options, and how good it is
+StackFile named(const BrdfTable& table, const std::filesystem::path& in, const std::string& made, const StackRequest& request) {
   StackFile file;
   file.name = table.info().name;
   file.source = in.filename().string();
+  file.comments = stack_comments(file.source, made);
+  for (const std::string& comment : request.comments) add_comment(file.comments, comment);
   return file;
 }
 
 void by_hand(const std::filesystem::path& in, const std::filesystem::path& out, const StackRequest& request,
              const CellPolicies& policies) {
   const BrdfTable table = load_input(in, policies);
-  StackFile file = named(table, in);
+  BsdfOptions options = request.by_hand;
+  if (request.charts.size() == 1) options.chart = request.charts.front();
+  options.interpolation = request.interpolation.value_or(Interpolation::displacement);
+  StackFile file = named(table, in,
+                         "sizes by hand, errors not measured: at most " + std::to_string(options.meridians) + " meridians, " +
+                             std::to_string(options.parallels) + " parallels, " + std::to_string(options.incident) + " incident angles, " +
+                             std::to_string(options.budget) + " bytes; tolerance " + number(*options.max_variance),
+                         request);
   {
     ProgressLine progress("building the stack of " + in.string());
-    BsdfOptions options = request.by_hand;
-    if (request.charts.size() == 1) options.chart = request.charts.front();
-    options.interpolation = request.interpolation.value_or(Interpolation::displacement);
     const Stack<float> stack(build_stack(table, options, [&](double share) { progress.update(share); }), options.interpolation);
     file.bsdf = {stack.grid(), options.interpolation, Storage::float32, colour_of_table(table, direction_map(stack), stack.theta_i(), colour_side)};
   }
@@ -83,9 +91,7 @@ std::string table_of_missed(const CompactChoice& choice, const BsdfOptions& opti
 std::string describe(const CompactChoice& choice, const BsdfOptions& options) {
   const CompactFit& best = choice.best();
   std::string text = std::string("chart ") + to_string(best.data.diagrams.chart) + ", " + std::to_string(best.data.diagrams.theta_i.size()) +
-                     " incident angles, " + std::to_string(best.bytes) + " bytes: relvar at most " +
-                     number(best.quality.worst_relvar, 2) + " up to 80 degrees, evaluation error " +
-                     number(100 * best.quality.eval_error, 2) + " %, albedo within " + number(100 * best.quality.albedo_error, 2) + " %\n";
+                     " incident angles, " + std::to_string(best.bytes) + " bytes: " + describe(best.quality) + "\n";
   if (missed(best, options)) return text + table_of_missed(choice, options);
   for (std::size_t k = 0; k < choice.tried.size(); ++k) {
     const CompactFit& other = choice.tried[k];
@@ -93,6 +99,14 @@ std::string describe(const CompactChoice& choice, const BsdfOptions& options) {
       text += std::string("  not ") + to_string(other.data.diagrams.chart) + ", " + std::to_string(other.bytes) + " bytes: relvar " +
               number(other.quality.worst_relvar, 2) + ", evaluation error " + number(100 * other.quality.eval_error, 2) + " %\n";
   }
+  return text;
+}
+
+/// The options that decided.
+std::string asked_for(const BsdfOptions& options, const StackRequest& request) {
+  std::string text = options.max_variance ? "--max-variance " + number(*options.max_variance) : "--budget " + std::to_string(options.budget);
+  if (options.max_variance && request.budget) text += " --budget " + std::to_string(options.budget);
+  if (request.charts.size() == 1) text += std::string(" --chart ") + to_string(request.charts.front());
   return text;
 }
 
@@ -158,7 +172,7 @@ void sized(const std::filesystem::path& in, const std::filesystem::path& out, co
                 number(best.quality.worst_relvar, 2).c_str());
   } else {
     file = stack_file;
-    StackFile stack = named(*table, in);
+    StackFile stack = named(*table, in, asked_for(options, request) + ": " + describe(best.quality), request);
     stack.bsdf = best.data;
     save_stack(file, stack);
     std::printf("%s", describe(*choice, options).c_str());

@@ -10,6 +10,7 @@
 #include "tools/convert/convert_rgl.h"
 #include "tools/convert/convert_scene.h"
 #include "tools/convert/convert_stack.h"
+#include "tools/convert/stack_comments.h"
 #include "tools/cli/failures.h"
 #include "tools/cli/input.h"
 #include "tools/cli/options.h"
@@ -60,7 +61,9 @@ void stack_to_stack(const CLI::App& verb, const Options& options, const std::str
   refuse(verb, stack_options, "a stack file keeps its diagrams");
   refuse(verb, {"--grid", "--phi-d"}, "a stack file keeps its diagrams");
   refuse_policies(verb, "a stack file has no such cells");
-  save_stack(options.out, load_stack(options.in));
+  StackFile file = load_stack(options.in);
+  for (const std::string& comment : options.stack.comments) add_comment(file.comments, comment);
+  save_stack(options.out, file);
 }
 
 void table_to_merl(const CLI::App& verb, const Options& options) {
@@ -129,6 +132,7 @@ void convert_file(const CLI::App& verb, Options& options) {
   const bool any_kind = std::filesystem::path(options.out).extension().empty() && options.stack.max_variance;
   const std::string extension =
       any_kind ? "" : checked_extension(options.out, {".exr", ".binary", ".mbsdf", ".bsdf"});
+  if (extension != ".exr") refuse(verb, {"--comment"}, "only a stack file has comments: OUT.exr");
   if (extension == ".bsdf") {
     any_to_rgl(verb, options);
     print_written(options.out);
@@ -230,6 +234,11 @@ void add_convert(CLI::App& app) {
                        std::to_string(stack.meridians) + "x" + std::to_string(stack.parallels) +
                        "]; .mbsdf: M thetas and N phis [90x180]")
       ->type_name("MxN");
+  verb->add_option("--comment", options->stack.comments,
+                   ".exr: a line for the comments of the file, after those that say how it was made: who measured it, its licence. "
+                   "May be given more than once")
+      ->type_name("TEXT")
+      ->allow_extra_args(false);
   const char* const scene = "Stacks of all materials of a scene, in place of IN and OUT";
   verb->add_option("--scene", options->scene, "Scene manifest (JSON): materials, their files and shares")->group(scene);
   verb->add_option("-o,--output", options->scene_out, "Folder for the stack files and scene-budget.json")->group(scene);
@@ -253,6 +262,7 @@ void add_convert(CLI::App& app) {
       "  gonio convert chrome.binary chrome.exr\n"
       "  gonio convert satin.bsdf small.exr --max-variance 0.01\n"
       "  gonio convert satin.bsdf near.exr --budget 128KiB\n"
+      "  gonio convert satin.bsdf satin.exr --comment 'measured at EPFL RGL, CC0'\n"
       "  gonio convert paper.bsdf paper --max-variance 0.01 --front front.json\n"
       "  gonio convert satin.bsdf satin.exr --interpolation displacement --grid 16x16\n"
       "  gonio convert satin.bsdf satin.binary\n"

@@ -19,6 +19,7 @@
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -57,6 +58,14 @@ void line(Facts& facts, const std::string& field, const std::string& value) {
 void both(Facts& facts, const char* field, const std::string& value) {
   line(facts, field, value);
   facts.json[field] = value;
+}
+
+/// A line of the file a line.
+void comments(Facts& facts, const std::string& text) {
+  std::istringstream lines(text);
+  std::string field = "comments";
+  for (std::string one; std::getline(lines, one); field.clear()) line(facts, field, one);
+  facts.json["comments"] = text;
 }
 
 std::string degrees(double radians) { return number(radians / degree, 4); }
@@ -178,7 +187,7 @@ void describe_table(Facts& facts, const std::string& path, const CellPolicies& p
 void describe_model(Facts& facts, const std::string& path) {
   const LobeModel model = load_model(path);
   both(facts, "name", model.name);
-  both(facts, "format", "model of fitted lobes");
+  both(facts, "format", "model of analytic lobes");
   both(facts, "size", std::to_string(model.lobes.size()) + " lobes, " +
                     std::to_string(model.specular_count()) + " of them specular");
   angles(facts, 0, pi<double> / 2);
@@ -205,6 +214,7 @@ void describe_stack(Facts& facts, const std::string& path) {
   both(facts, "name", file.name);
   both(facts, "format", "stack of diagrams, version " + std::to_string(stack_file_version));
   both(facts, "source", file.source);
+  comments(facts, file.comments);
   both(facts, "chart", to_string(file.bsdf.diagrams.chart));
   both(facts, "between", to_string(file.bsdf.interpolation));
   both(facts, "size",

@@ -11,6 +11,7 @@
 #include <gonio/mapping/base/atomic_file.h>
 #include <gonio/mapping/base/did_you_mean.h>
 #include <gonio/mapping/base/error.h>
+#include "tools/render/data_folder.h"
 #include "tools/cli/number.h"
 #include "tools/cli/options.h"
 #include "tools/cli/progress.h"
@@ -44,8 +45,11 @@ class Clock {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+/// What is asked for; a measured material that comes with the program if nothing is.
 Scene load(const Options& options) {
-  Scene scene = options.choice.load();
+  SceneChoice choice = options.choice;
+  if (choice.scene.empty() && choice.material.empty()) choice.material = (data_folder() / "materials/cc_iris_purple_gem.exr").string();
+  Scene scene = choice.load();
   if (!options.sampling.empty()) {
     const auto method = parse_sampling_method(options.sampling);
     if (!method) throw Error("--sampling: found '" + options.sampling + "', expected " + one_of(sampling_method_names(), options.sampling));
@@ -119,7 +123,9 @@ void add_render(CLI::App& app) {
   verb->add_option("--exposure", options->exposure, "Factor of radiances in a .png")->capture_default_str();
   add_render_options(*verb, options->render);
   verb->footer(
+      "With neither SCENE nor --material: a measured material of the folder data/ that comes with gonio.\n\n"
       "Examples:\n"
+      "  gonio render -o iris.png\n"
       "  gonio render --material satin.bsdf -o satin.png\n"
       "  gonio render --material satin.bsdf --sampling cosine -o noisy.png\n"
       "  gonio render scene.json -o picture.exr --samples 1024");

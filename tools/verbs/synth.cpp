@@ -1,4 +1,5 @@
 #include <gonio/fitting/model/synth.h>
+#include <gonio/mapping/base/atomic_file.h>
 #include <gonio/mapping/base/error.h>
 #include "tools/cli/check_not_input.h"
 #include "tools/cli/options.h"
@@ -52,16 +53,29 @@ LobeModel model_of(const std::string& text) {
   return file ? load_model(text) : parse_model(text);
 }
 
-void synth(Options& options) {
+/// The model itself.
+void write_model(const CLI::App& verb, const Options& options) {
+  for (const char* option : {"--noise", "--seed", "--measured-to"})
+    if (verb.count(option) > 0) throw Error(std::string(option) + ": found one, expected none: a model has no cells");
+  const std::string text = to_json(model_of(options.model));
+  write_stream_atomically(options.out, [&](std::ostream& stream) { stream << text; });
+  print_written(options.out);
+}
+
+void synth(const CLI::App& verb, Options& options) {
   if (options.list) {
     print_models();
     return;
   }
   if (options.model.empty()) throw Error("MODEL: found none, expected one; see gonio synth --list");
   if (options.out.empty())
-    throw Error("-o: found no output file, expected a .binary or .mbsdf file");
-  const std::string extension = checked_extension(options.out, {".binary", ".mbsdf"});
+    throw Error("-o: found no output file, expected a .binary, .mbsdf or .json file");
+  const std::string extension = checked_extension(options.out, {".binary", ".mbsdf", ".json"});
   check_not_input(options.out, {options.model});
+  if (extension == ".json") {
+    write_model(verb, options);
+    return;
+  }
   const double sigma = options.synth.noise_sigma, limit = options.measured_to_degrees;
   if (!(sigma >= 0 && std::isfinite(sigma))) {
     throw Error("--noise: found " + std::to_string(sigma) + ", expected a number from 0");
@@ -85,11 +99,11 @@ void synth(Options& options) {
 
 void add_synth(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("synth", "A table computed from an analytic model");
+  CLI::App* verb = app.add_subcommand("synth", "A table computed from an analytic model, or the model as a file");
   verb->add_option(
       "MODEL", options->model,
       "'default', lobes joined by + with their parameters (see --list), or a fit.json");
-  verb->add_option("-o,--output", options->out, "File to write: MERL (.binary) or MBSDF (.mbsdf)")
+  verb->add_option("-o,--output", options->out, "File to write: MERL (.binary), MBSDF (.mbsdf), or the model itself (.json)")
       ->type_name("OUT");
   verb->add_flag("--list", options->list, "Lists lobes and parameters");
   verb->add_option("--noise", options->synth.noise_sigma,
@@ -105,10 +119,11 @@ void add_synth(CLI::App& app) {
       "Examples:\n"
       "  gonio synth --list\n"
       "  gonio synth default -o default.binary\n"
+      "  gonio synth default -o default.json\n"
       "  gonio synth ggx:alpha=0.1,F0=0.04+lambert:albedo=0.5/0.3/0.1 -o plastic.mbsdf\n"
       "  gonio synth ggx:alpha=0.2,eta=0.2,k=3.9 --noise 0.05 --measured-to 80 -o metal.binary\n"
       "  gonio synth fit.json -o fitted.binary");
-  verb->callback([options] { synth(*options); });
+  verb->callback([options, verb] { synth(*verb, *options); });
 }
 
 }  // namespace gonio
