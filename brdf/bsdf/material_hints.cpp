@@ -10,7 +10,7 @@
 namespace gonio {
 namespace {
 
-constexpr int side = 64;
+constexpr int side = 32;
 constexpr float step = 2 * pi<float> / 180;
 
 /// Calls function(sample) for side x side points of the unit square.

@@ -1,6 +1,7 @@
 #include <gonio/mapping/base/atomic_file.h>
 #include <gonio/mapping/base/did_you_mean.h>
 #include <gonio/mapping/base/error.h>
+#include "tools/cli/number.h"
 #include "tools/cli/options.h"
 
 #include <CLI/CLI.hpp>
@@ -101,8 +102,14 @@ void add_stack_options(CLI::App& verb, BsdfOptions& stack) {
       ->type_name("SIZE")
       ->default_str(std::to_string(stack.budget / 1024) + "KiB")
       ->group(by_hand);
-  verb.add_option("--tolerance", stack.max_variance, "Relative variance that is good enough")
-      ->capture_default_str()
+  verb.add_option_function<double>(
+          "--tolerance",
+          [&stack](double value) {
+            if (!(value > 0)) throw CLI::ValidationError("--tolerance", "found " + number(value, 4) + ", expected more than 0");
+            stack.max_variance = value;
+          },
+          "Relative variance that is good enough")
+      ->default_str(number(*stack.max_variance, 4))
       ->group(by_hand);
 }
 

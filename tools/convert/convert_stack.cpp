@@ -74,7 +74,7 @@ std::string table_of_missed(const CompactChoice& choice, const BsdfOptions& opti
     return std::make_pair(a->bytes, a->quality.worst_relvar) < std::make_pair(b->bytes, b->quality.worst_relvar);
   });
   std::string text = "  a relvar of " + number(*options.max_variance, 2) + " was not reached within " + std::to_string(options.budget) +
-                     " bytes; what was:\n  bytes in memory      relvar  evaluation error  chart\n";
+                     " bytes; what was:\n            bytes      relvar  evaluation error  chart\n";
   double least = std::numeric_limits<double>::infinity();
   for (const CompactFit* fit : fits) {
     if (fit->quality.worst_relvar >= least) continue;

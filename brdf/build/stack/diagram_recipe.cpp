@@ -37,18 +37,18 @@ DiagramGrid Recipe::diagram(double theta_i) const {
   const DiskDensity cosine = cosine_density(chart_, theta_i);
   DiagramGrid grid = fitted(density_at(theta_i));
   if (std::all_of(grid.density.begin(), grid.density.end(), [](double d) { return d == 0; })) return fitted(cosine);
-  raise(theta_i, 1, grid);
+  if (can_be_raised(theta_i)) raise(theta_i, 1, grid);
+  grid = Diagram<double>(grid).grid();
   for (std::size_t i = 0; i < grid.phi.size(); ++i)
     for (std::size_t j = 0; j < grid.r.size(); ++j)
       grid.at(i, j) = (1 - cosine_share) * grid.at(i, j) + cosine_share * cosine({grid.r[j], grid.phi[i]});
   return grid;
 }
 
+bool Recipe::can_be_raised(double theta_i) const { return chart_ == Chart::outgoing || theta_i < 89 * pi<double> / 180; }
+
 void Recipe::raise(double theta_i, double mean, DiagramGrid& grid) const {
-  // Half vectors squeeze the horizon about the mirror direction of a grazing wi into next to no solid angle: what is raised
-  // there is a spike that directions in float do not hold.
-  if (chart_ == Chart::outgoing || theta_i < 89 * pi<double> / 180)
-    raise_tail([density = density_at(theta_i), mean](Polar<double> at) { return density(at) / mean; }, grid);
+  raise_tail([density = density_at(theta_i), mean](Polar<double> at) { return density(at) / mean; }, grid);
   grid = Diagram<double>(grid).grid();
 }
 

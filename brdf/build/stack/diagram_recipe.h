@@ -26,6 +26,10 @@ class Recipe {
   /// With the share of a cosine lobe; a cosine lobe alone where the table reflects nothing.
   DiagramGrid diagram(double theta_i) const;
 
+  /// Not next to grazing incidence in half vectors: these squeeze the horizon about the mirror direction of wi into next to no
+  /// solid angle, so that what is raised there is a spike that directions in float do not hold.
+  bool can_be_raised(double theta_i) const;
+
   /// Raises a normalised diagram next to the horizon to the table's density at an incident angle (raise_tail()), where `mean` is
   /// its mass.
   void raise(double theta_i, double mean, DiagramGrid& grid) const;

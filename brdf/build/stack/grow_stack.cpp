@@ -152,7 +152,8 @@ class Growth {
       means[k] = weights((a->first + b->first) / 2, a->second, b->second, 0.5).mean;
     });
     parallel_for(built_.size(), [&](std::size_t k) {
-      Built& own = std::next(built_.begin(), static_cast<std::ptrdiff_t>(k))->second;
+      auto& [angle, own] = *std::next(built_.begin(), static_cast<std::ptrdiff_t>(k));
+      if (!recipe_.can_be_raised(angle)) return;
       for (const std::size_t interval : {k - 1, k})
         if (interval < intervals.size() && means[interval] > 0)
           recipe_.raise((intervals[interval]->first + std::next(intervals[interval])->first) / 2, means[interval], own.grid);

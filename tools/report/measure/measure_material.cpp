@@ -254,12 +254,19 @@ MaterialReport measure_stack_file(const std::filesystem::path& path, const Progr
   const StackFile file = load_stack(path);
   MaterialReport material{file.name, path.string(), "stack", std::filesystem::file_size(path), {}};
   const auto start = std::chrono::steady_clock::now();
-  const auto bsdf = std::make_shared<const Bsdf>(load_bsdf(path));
-  const std::chrono::duration<double> build = std::chrono::steady_clock::now() - start;
   nlohmann::json params = stack_params(file.bsdf);
   params["self_contained"] = true;
   Bench bench;
-  bench.add<Bsdf>(to_string(file.bsdf.interpolation), to_string(file.bsdf.diagrams.chart), params, build.count(), bsdf);
+  const auto add = [&](auto bsdf) {
+    using Held = decltype(bsdf);
+    const std::chrono::duration<double> build = std::chrono::steady_clock::now() - start;
+    bench.add<Held>(to_string(file.bsdf.interpolation), to_string(file.bsdf.diagrams.chart), params, build.count(),
+                    std::make_shared<const Held>(std::move(bsdf)));
+  };
+  if (file.bsdf.interpolation == Interpolation::mixture)
+    add(StackBsdf(file.bsdf));
+  else
+    add(load_bsdf(path));
   bench.run(material, progress);
   material.stack.emplace(file.bsdf.diagrams, file.bsdf.interpolation);
   return material;
