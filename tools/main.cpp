@@ -1,8 +1,3 @@
-#include <gonio/mapping/base/did_you_mean.h>
-#include <gonio/mapping/base/error.h>
-#include "tools/verbs/verbs.h"
-
-#include <CLI/CLI.hpp>
 #include <cctype>
 #include <cstdio>
 #include <exception>
@@ -10,6 +5,13 @@
 #include <new>
 #include <string>
 #include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include <gonio/mapping/base/did_you_mean.h>
+#include <gonio/mapping/base/error.h>
+
+#include "tools/verbs/verbs.h"
 
 namespace {
 
@@ -43,13 +45,15 @@ std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
   } else {
     return std::string(error.what()) + "; see --help";
   }
-  return (found.empty() ? "found no verb" : "found '" + found + "'") + ", expected " + gonio::one_of(known, found) + "; see --help";
+  return (found.empty() ? "found no verb" : "found '" + found + "'") + ", expected " + gonio::one_of(known, found) +
+         "; see --help";
 }
 
 /// What could not be written is an error even where no one looks at each write, as in --help.
 void flush_output() {
   std::cout.flush();
-  if (!std::cout || std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw gonio::Error("standard output: cannot be written");
+  if (!std::cout || std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+    throw gonio::Error("standard output: cannot be written");
 }
 
 /// Runs the verb, or prints help or the version.

@@ -42,14 +42,16 @@ HWY_EXPORT(eval_colour_n);
 
 }  // namespace
 
-void draw_many(const BatchLayout& layout, std::size_t count, const float* const (&in)[5], float* const (&out)[4]) noexcept {
+void draw_many(const BatchLayout& layout, std::size_t count, const float* const (&in)[5],
+               float* const (&out)[4]) noexcept {
   HWY_DYNAMIC_DISPATCH(draw_n)(layout, count, in, out);
 }
 void draw_many(const BatchLayout& layout, const BatchColour& colour, std::size_t count, const float* const (&in)[5],
                float* const (&out)[7]) noexcept {
   HWY_DYNAMIC_DISPATCH(draw_colour_n)(layout, colour, count, in, out);
 }
-void pdf_many(const BatchLayout& layout, std::size_t count, const float* const (&in)[6], float* const (&out)[1]) noexcept {
+void pdf_many(const BatchLayout& layout, std::size_t count, const float* const (&in)[6],
+              float* const (&out)[1]) noexcept {
   HWY_DYNAMIC_DISPATCH(surface_pdf_n)(layout, count, in, out);
 }
 void eval_many(const BatchLayout& layout, const BatchColour& colour, std::size_t count, const float* const (&in)[6],

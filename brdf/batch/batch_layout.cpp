@@ -1,8 +1,7 @@
-#include <gonio/brdf/batch/batch_layout.h>
-
 #include <algorithm>
 #include <limits>
 
+#include <gonio/brdf/batch/batch_layout.h>
 #include <gonio/mapping/base/error.h>
 
 namespace gonio {
@@ -12,7 +11,8 @@ namespace {
 /// Vector code has offsets in bytes of 32 bits.
 void check_size(std::size_t values) {
   constexpr std::size_t most = std::numeric_limits<int>::max() / sizeof(float);
-  if (values > most) throw Error("batch: found " + std::to_string(values) + " values, expected at most " + std::to_string(most));
+  if (values > most)
+    throw Error("batch: found " + std::to_string(values) + " values, expected at most " + std::to_string(most));
 }
 
 /// No mass and no line is above; small enough for weights and sums.
@@ -61,7 +61,8 @@ BatchLayout::BatchLayout(const Stack<float>& stack)
   before_meridians = r + padded(parallels);
   before_parallels = before_meridians + round_up(across - 1, groups_at_once);
   const int of_meridians = across * meridian_group;
-  parallel_groups = round_up(before_parallels + meridians * before_row + of_meridians, parallel_group);  // begin with a line of the cache
+  parallel_groups = round_up(before_parallels + meridians * before_row + of_meridians,
+                             parallel_group);  // begin with a line of the cache
   meridian_groups = parallel_groups - of_meridians;
   stride = parallel_groups + meridians * along * parallel_group;
   check_size(stack.diagrams().size() * static_cast<std::size_t>(stride));
@@ -70,7 +71,8 @@ BatchLayout::BatchLayout(const Stack<float>& stack)
   for (const Diagram<float>& d : stack.diagrams()) {
     const int m = d.meridians(), n = d.parallels();
     const float* const phi = d.values().data();
-    const float *cumulative_phi = phi + m, *own_r = cumulative_phi + m, *density = own_r + n, *cumulative = density + m * n;
+    const float *cumulative_phi = phi + m, *own_r = cumulative_phi + m, *density = own_r + n,
+                *cumulative = density + m * n;
     std::fill_n(block, meridian_groups, beyond);
     std::copy_n(phi, m, block), std::copy_n(own_r, n, block + r);
     // The masses before cells: into groups, `step` floats apart, and those before groups apart.
@@ -98,8 +100,13 @@ BatchLayout::BatchLayout(const Stack<float>& stack)
 }
 
 BatchColour::BatchColour(const Colour& colour, const BatchLayout& stack)
-    : side(colour.side()), angles(colour.theta_i()), same_angles(angles.values == stack.angles.values),
-      layer(side * (side / 2)), last_row(std::max(side / 2 - 2, 0)), next_row(side > 2 ? side : 0), next_layer(angles.count > 1 ? layer : 0) {
+    : side(colour.side()),
+      angles(colour.theta_i()),
+      same_angles(angles.values == stack.angles.values),
+      layer(side * (side / 2)),
+      last_row(std::max(side / 2 - 2, 0)),
+      next_row(side > 2 ? side : 0),
+      next_layer(angles.count > 1 ? layer : 0) {
   check_size(4 * colour.cells());
   for (const glm::vec3& w : colour.values())
     for (const float channel : {w.r, w.g, w.b, 0.0f}) values.push_back(channel);

@@ -13,9 +13,10 @@ namespace gonio {
 namespace HWY_NAMESPACE {
 
 void sample_kernel(const BatchLayout& layout, std::size_t count, const float* const (&in)[3], float* const (&out)[4]) {
-  for_blocks(count, in, out, [&](auto elements, const float* const (&x)[3], float* const (&y)[4]) GONIO_INLINED {
+  for_blocks(count, in, out, [&](auto elements, const float* const(&x)[3], float* const(&y)[4]) GONIO_INLINED {
     HWY_ALIGN float r[block_size];
-    for (std::size_t k = 0; k < elements; k += hn::Lanes(D())) hn::Store(incident_angle(hn::LoadU(D(), x[0] + k)).r, D(), r + k);
+    for (std::size_t k = 0; k < elements; k += hn::Lanes(D()))
+      hn::Store(incident_angle(hn::LoadU(D(), x[0] + k)).r, D(), r + k);
     draw_stack(layout, elements, Places(layout.angles, elements, x[0], r), x[0], x[1], x[2], y[0], y[1], y[2], y[3]);
   });
 }

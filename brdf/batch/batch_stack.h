@@ -18,8 +18,8 @@ namespace gonio {
 /// the map is no steeper than that lets the floats u and v; the pdf is that of the direction returned, as
 /// exact as Stack's: pdf_n() gives it again within 2e-3, relative, besides 1e-4 of the largest density.
 ///
-/// Memory: a copy of the stack with every diagram padded to the largest number of lines, a quarter to a half more than Stack.
-/// Thread safety: immutable; concurrent use is safe. No member but the constructor allocates.
+/// Memory: a copy of the stack with every diagram padded to the largest number of lines, a quarter to a half more than
+/// Stack. Thread safety: immutable; concurrent use is safe. No member but the constructor allocates.
 class BatchStack {
  public:
   /// The stack is copied. @throws Error for Interpolation::mixture, which has no batch form, and for stacks of

@@ -18,8 +18,8 @@ namespace HWY_NAMESPACE {
 namespace {
 
 #if HWY_TARGET != HWY_SCALAR
-// One draw at a time. The two diagrams of a displacement are the two lanes of a vector: a draw is one long chain, and the shorter its
-// code the more of the next draw is under way.
+// One draw at a time. The two diagrams of a displacement are the two lanes of a vector: a draw is one long chain, and
+// the shorter its code the more of the next draw is under way.
 
 /// The diagram before an incident angle, and how far the angle is from there to the next: Stack::Place.
 struct PlaceOfOne {
@@ -29,7 +29,8 @@ struct PlaceOfOne {
 HWY_INLINE PlaceOfOne place_of_one(const BatchAngles& angles, const IncidentAngle& i) {
   if (angles.count == 1) return {0, 0};
   const float r = hn::GetLane(i.r);
-  int k = angles.guide[static_cast<std::size_t>(std::min(static_cast<int>(r * BatchAngles::guide_parts), BatchAngles::guide_parts - 1))];
+  int k = angles.guide[static_cast<std::size_t>(
+      std::min(static_cast<int>(r * BatchAngles::guide_parts), BatchAngles::guide_parts - 1))];
   for (int step = 0; step < angles.guide_steps; ++step) k = std::min(k + (angles.radii[k + 1] < r), angles.count - 2);
   const V first = set(angles.values[k]), last = set(angles.values[k + 1]);
   return {k, hn::GetLane(clamp01(hn::Div(hn::Sub(i.theta, first), hn::Sub(last, first))))};
@@ -43,7 +44,8 @@ HWY_INLINE void colour_of_one(const BatchColour& colour, const PlaceOfOne& place
   const float y = hn::GetLane(hn::Min(hn::Max(along, zero()), hn::MulSub(side, half, set(1))));
   const int i = std::min(static_cast<int>(x), colour.side - 2), j = std::min(static_cast<int>(y), colour.last_row);
   const std::ptrdiff_t cell = place.k * colour.layer + j * colour.side + i;
-  mix_cells(colour, colour.values.data() + 4 * cell, x - static_cast<float>(i), y - static_cast<float>(j), place.alpha, to);
+  mix_cells(colour, colour.values.data() + 4 * cell, x - static_cast<float>(i), y - static_cast<float>(j), place.alpha,
+            to);
 }
 
 /// Numbers of two diagrams, as lanes; of their first lanes, of their second ones.
@@ -57,9 +59,11 @@ struct InDiagrams {
   V mass, phi, r, gap, pdf;
 };
 
-/// Diagram::meridian_at() and parallel_at(), the mass before the meridian being `target`; of the first source alone, or of both.
+/// Diagram::meridian_at() and parallel_at(), the mass before the meridian being `target`; of the first source alone, or
+/// of both.
 template <bool both, class Source>
-HWY_INLINE InDiagrams draw_maps(const BatchLayout& layout, const Source& source0, const Source& source1, V target, V v, V rest) {
+HWY_INLINE InDiagrams draw_maps(const BatchLayout& layout, const Source& source0, const Source& source1, V target, V v,
+                                V rest) {
   constexpr std::ptrdiff_t cells = BatchLayout::group, floats = BatchLayout::parallel_group;
   struct Sector {
     std::ptrdiff_t index;
@@ -86,7 +90,8 @@ HWY_INLINE InDiagrams draw_maps(const BatchLayout& layout, const Source& source0
   const auto ring = [&](const Source& source, std::ptrdiff_t i, float b_of, float a_of, float before) GONIO_INLINED {
     const auto groups = source.row(layout.before_parallels + i * layout.before_row, layout.before_row, b_of, a_of);
     const std::ptrdiff_t g = count_below<true>(groups, 0, layout.along - 1, before);
-    const auto group = source.row(layout.parallel_groups + (i * layout.along + g) * floats, layout.along * floats, b_of, a_of);
+    const auto group =
+        source.row(layout.parallel_groups + (i * layout.along + g) * floats, layout.along * floats, b_of, a_of);
     const std::ptrdiff_t j = find_in_group(group, before);
     return Ring{Row{source.block + layout.r}.mixed(D(), g * cells + j), group.mixed(D(), cells + j), group.at(j)};
   };
@@ -101,7 +106,8 @@ HWY_INLINE InDiagrams draw_maps(const BatchLayout& layout, const Source& source0
 }
 
 /// Displacement::sample().
-HWY_INLINE InDiagrams draw_displaced(const BatchLayout& layout, const float* block, float alpha, V target, V v, V rest) {
+HWY_INLINE InDiagrams draw_displaced(const BatchLayout& layout, const float* block, float alpha, V target, V v,
+                                     V rest) {
   const OneSource first{block}, second{block + layout.stride};
   const InDiagrams x = draw_maps<true>(layout, first, second, target, hn::Max(v, set(smallest_v)), rest);
   const auto other = [](V lane) HWY_ATTR { return hn::Reverse2(D(), lane); };
@@ -113,7 +119,8 @@ HWY_INLINE InDiagrams draw_displaced(const BatchLayout& layout, const float* blo
 }
 
 /// Bsdf::sample(), of direction and pdf alone where there is no colour.
-bool draw(const BatchLayout& layout, const BatchColour* colour, const glm::vec3& wi, const glm::vec2& u, BsdfSample& out) {
+bool draw(const BatchLayout& layout, const BatchColour* colour, const glm::vec3& wi, const glm::vec2& u,
+          BsdfSample& out) {
   if (!(gonio::is_above(wi) && std::isfinite(u.x + u.y))) return false;
   const Frame frame({set(wi.x), set(wi.y), set(wi.z)});
   const PlaceOfOne place = place_of_one(layout.angles, frame.i);
@@ -129,7 +136,8 @@ bool draw(const BatchLayout& layout, const BatchColour* colour, const glm::vec3&
   if (layout.angles.count > 1 && layout.interpolation == Interpolation::displacement) {
     at = draw_displaced(layout, block, place.alpha, target, uv.v, uv.rest);
     // What takes the pdf from the direction, which vectors of two do not.
-    if (HWY_UNLIKELY(hn::GetLane(uv.rest) < tail || hn::GetLane(at.gap) < rim)) return draw_in_one_lane(layout, colour, wi, u, out);
+    if (HWY_UNLIKELY(hn::GetLane(uv.rest) < tail || hn::GetLane(at.gap) < rim))
+      return draw_in_one_lane(layout, colour, wi, u, out);
   } else if (layout.angles.count > 1 && layout.interpolation == Interpolation::blend) {
     const TwoSources source{block, layout.stride, 1 - place.alpha, place.alpha};
     at = draw_maps<false>(layout, source, source, target, uv.v, uv.rest);
@@ -144,7 +152,8 @@ bool draw(const BatchLayout& layout, const BatchColour* colour, const glm::vec3&
   return out.pdf > 0 && out.wo.z > 0;
 }
 #else
-bool draw(const BatchLayout& layout, const BatchColour* colour, const glm::vec3& wi, const glm::vec2& u, BsdfSample& out) {
+bool draw(const BatchLayout& layout, const BatchColour* colour, const glm::vec3& wi, const glm::vec2& u,
+          BsdfSample& out) {
   return draw_in_one_lane(layout, colour, wi, u, out);
 }
 #endif
@@ -162,7 +171,8 @@ HWY_EXPORT(draw);
 
 }  // namespace
 
-bool draw_one(const BatchLayout& layout, const BatchColour* colour, const glm::vec3& wi, const glm::vec2& u, BsdfSample& out) noexcept {
+bool draw_one(const BatchLayout& layout, const BatchColour* colour, const glm::vec3& wi, const glm::vec2& u,
+              BsdfSample& out) noexcept {
   return HWY_DYNAMIC_DISPATCH(draw)(layout, colour, wi, u, out);
 }
 

@@ -16,10 +16,12 @@ namespace {
 
 // One element, by the kernels of batches: what they compute costs no branch and no library call.
 
-bool draw(const BatchLayout& layout, const BatchColour* colour, const glm::vec3& wi, const glm::vec2& u, BsdfSample& out) {
+bool draw(const BatchLayout& layout, const BatchColour* colour, const glm::vec3& wi, const glm::vec2& u,
+          BsdfSample& out) {
   const float* const in[] = {&wi.x, &wi.y, &wi.z, &u.x, &u.y};
   if (colour != nullptr)
-    draw_kernel(layout, colour, 1, in, {&out.wo.x, &out.wo.y, &out.wo.z, &out.pdf, &out.weight.x, &out.weight.y, &out.weight.z});
+    draw_kernel(layout, colour, 1, in,
+                {&out.wo.x, &out.wo.y, &out.wo.z, &out.pdf, &out.weight.x, &out.weight.y, &out.weight.z});
   else
     draw_kernel(layout, colour, 1, in, {&out.wo.x, &out.wo.y, &out.wo.z, &out.pdf});
   return out.pdf > 0;
@@ -50,7 +52,8 @@ HWY_EXPORT(eval);
 
 }  // namespace
 
-bool draw_in_one_lane(const BatchLayout& layout, const BatchColour* colour, const glm::vec3& wi, const glm::vec2& u, BsdfSample& out) noexcept {
+bool draw_in_one_lane(const BatchLayout& layout, const BatchColour* colour, const glm::vec3& wi, const glm::vec2& u,
+                      BsdfSample& out) noexcept {
   return HWY_DYNAMIC_DISPATCH(draw)(layout, colour, wi, u, out);
 }
 
@@ -58,7 +61,8 @@ float pdf_one(const BatchLayout& layout, const glm::vec3& wi, const glm::vec3& w
   return HWY_DYNAMIC_DISPATCH(pdf)(layout, wi, wo);
 }
 
-glm::vec3 eval_one(const BatchLayout& layout, const BatchColour& colour, const glm::vec3& wi, const glm::vec3& wo) noexcept {
+glm::vec3 eval_one(const BatchLayout& layout, const BatchColour& colour, const glm::vec3& wi,
+                   const glm::vec3& wo) noexcept {
   return HWY_DYNAMIC_DISPATCH(eval)(layout, colour, wi, wo);
 }
 

@@ -1,8 +1,7 @@
-#include <gonio/brdf/bsdf/bsdf.h>
-
 #include <utility>
 
 #include <gonio/brdf/batch/batch_bsdf.h>
+#include <gonio/brdf/bsdf/bsdf.h>
 #include <gonio/brdf/bsdf/material_hints.h>
 #include <gonio/brdf/table/table.h>
 #include <gonio/mapping/base/error.h>
@@ -11,7 +10,10 @@ namespace gonio {
 
 struct Bsdf::State {
   State(const BsdfData& data, std::shared_ptr<const BrdfTable> from)
-      : layout(sampled_stack(data)), colour(from ? Colour() : data.colour, layout), table(std::move(from)), storage(data.storage) {}
+      : layout(sampled_stack(data)),
+        colour(from ? Colour() : data.colour, layout),
+        table(std::move(from)),
+        storage(data.storage) {}
 
   const BatchColour* own_colour() const noexcept { return table ? nullptr : &colour; }
   bool draw(const glm::vec3& wi, const glm::vec2& u, BsdfSample& out) const noexcept {
@@ -32,7 +34,9 @@ struct Bsdf::State {
 
 namespace {
 
-void set_at(Arrays3 a, std::size_t k, const glm::vec3& value) noexcept { a.x[k] = value.x, a.y[k] = value.y, a.z[k] = value.z; }
+void set_at(Arrays3 a, std::size_t k, const glm::vec3& value) noexcept {
+  a.x[k] = value.x, a.y[k] = value.y, a.z[k] = value.z;
+}
 glm::vec3 get_at(ConstArrays3 a, std::size_t k) noexcept { return {a.x[k], a.y[k], a.z[k]}; }
 
 }  // namespace
@@ -58,7 +62,8 @@ void Bsdf::sample_n(std::size_t count, ConstArrays3 wi, const float* u, const fl
                     Arrays3 weight) const noexcept {
   const State& s = *state_;
   if (!s.table) {
-    draw_many(s.layout, s.colour, count, {wi.x, wi.y, wi.z, u, v}, {wo.x, wo.y, wo.z, pdf, weight.x, weight.y, weight.z});
+    draw_many(s.layout, s.colour, count, {wi.x, wi.y, wi.z, u, v},
+              {wo.x, wo.y, wo.z, pdf, weight.x, weight.y, weight.z});
     return;
   }
   draw_many(s.layout, count, {wi.x, wi.y, wi.z, u, v}, {wo.x, wo.y, wo.z, pdf});

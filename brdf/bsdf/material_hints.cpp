@@ -1,11 +1,11 @@
-#include <gonio/brdf/bsdf/material_hints.h>
-#include <gonio/brdf/value/luminance.h>
-#include <gonio/mapping/charts/hemisphere.h>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
+
+#include <gonio/brdf/bsdf/material_hints.h>
+#include <gonio/brdf/value/luminance.h>
+#include <gonio/mapping/charts/hemisphere.h>
 
 namespace gonio {
 namespace {

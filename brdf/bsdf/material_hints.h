@@ -1,12 +1,13 @@
 #pragma once
 
-#include <gonio/brdf/value/bsdf_sample.h>
-
 #include <array>
 #include <functional>
+#include <optional>
+
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <optional>
+
+#include <gonio/brdf/value/bsdf_sample.h>
 
 namespace gonio {
 

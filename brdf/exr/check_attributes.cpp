@@ -1,10 +1,9 @@
-#include <gonio/brdf/exr/check_attributes.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <map>
 
+#include <gonio/brdf/exr/check_attributes.h>
 #include <gonio/mapping/base/bytes.h>
 #include <gonio/mapping/base/error.h>
 
@@ -18,12 +17,30 @@ namespace {
 
 /// Bytes that OpenEXR reads for a type whatever the size that the file gives; 0 for other types.
 std::size_t fixed_size(const std::string& type) {
-  static const std::map<std::string, std::size_t> sizes{
-      {"box2f", 16},        {"box2i", 16},   {"chromaticities", 32}, {"compression", 1}, {"deepImageState", 1},
-      {"double", 8},        {"envmap", 1},   {"float", 4},           {"int", 4},         {"keycode", 28},
-      {"lineOrder", 1},     {"m33f", 36},    {"m33d", 72},           {"m44f", 64},       {"m44d", 128},
-      {"rational", 8},      {"tiledesc", 9}, {"timecode", 8},        {"v2f", 8},         {"v2i", 8},
-      {"v2d", 16},          {"v3f", 12},     {"v3i", 12},            {"v3d", 24}};
+  static const std::map<std::string, std::size_t> sizes{{"box2f", 16},
+                                                        {"box2i", 16},
+                                                        {"chromaticities", 32},
+                                                        {"compression", 1},
+                                                        {"deepImageState", 1},
+                                                        {"double", 8},
+                                                        {"envmap", 1},
+                                                        {"float", 4},
+                                                        {"int", 4},
+                                                        {"keycode", 28},
+                                                        {"lineOrder", 1},
+                                                        {"m33f", 36},
+                                                        {"m33d", 72},
+                                                        {"m44f", 64},
+                                                        {"m44d", 128},
+                                                        {"rational", 8},
+                                                        {"tiledesc", 9},
+                                                        {"timecode", 8},
+                                                        {"v2f", 8},
+                                                        {"v2i", 8},
+                                                        {"v2d", 16},
+                                                        {"v3f", 12},
+                                                        {"v3i", 12},
+                                                        {"v3d", 24}};
   const auto found = sizes.find(type);
   return found == sizes.end() ? 0 : found->second;
 }

@@ -1,5 +1,8 @@
-#include <gonio/brdf/exr/stack_file.h>
+#include <algorithm>
+#include <cstring>
+#include <vector>
 
+#include <ImathBox.h>
 #include <ImfChannelList.h>
 #include <ImfFloatAttribute.h>
 #include <ImfFloatVectorAttribute.h>
@@ -15,22 +18,18 @@
 #include <ImfStringAttribute.h>
 #include <ImfTestFile.h>
 #include <ImfVersion.h>
-#include <ImathBox.h>
 
-#include <algorithm>
-#include <cstring>
-#include <vector>
-
-#include <gonio/mapping/base/bytes.h>
 #include <gonio/brdf/exr/check_attributes.h>
+#include <gonio/brdf/exr/stack_file.h>
 #include <gonio/mapping/base/atomic_file.h>
+#include <gonio/mapping/base/bytes.h>
 #include <gonio/mapping/base/error.h>
 
 namespace gonio {
 namespace {
 
 constexpr std::size_t most_values = std::size_t{1} << 23;  // of a part
-constexpr int largest_side = 1 << 14;  // lines or cells a part may have: no real stack comes near
+constexpr int largest_side = 1 << 14;                      // lines or cells a part may have: no real stack comes near
 
 [[noreturn]] void fail(const std::string& file, const std::string& field, const std::string& found,
                        const std::string& expected) {
@@ -68,14 +67,14 @@ Imf::FrameBuffer frame_buffer(const std::vector<std::string>& channels, int widt
 template <class Attribute, class Value>
 Value attribute(const std::string& file, const Imf::Header& header, const char* name) {
   const Attribute* found = header.findTypedAttribute<Attribute>(name);
-  if (!found)
-    fail(file, "part " + header.name() + ": attribute " + name, "none of that type", "one");
+  if (!found) fail(file, "part " + header.name() + ": attribute " + name, "none of that type", "one");
   return found->value();
 }
 
 /// One of the values that have a name; `absent` for files that are older than the attribute.
 template <class Value, std::size_t N>
-Value choice(const std::string& file, const Imf::Header& header, const char* name, const Value (&known)[N], Value absent) {
+Value choice(const std::string& file, const Imf::Header& header, const char* name, const Value (&known)[N],
+             Value absent) {
   if (header.find(name) == header.end()) return absent;
   const std::string found = attribute<Imf::StringAttribute, std::string>(file, header, name);
   std::string expected;
@@ -86,15 +85,14 @@ Value choice(const std::string& file, const Imf::Header& header, const char* nam
   fail(file, std::string("attribute ") + name, found, "one of " + expected);
 }
 
-std::vector<float> read_pixels(const std::string& file, Imf::MultiPartInputFile& input, int k, int width,
-                               int height, const std::vector<std::string>& channels) {
+std::vector<float> read_pixels(const std::string& file, Imf::MultiPartInputFile& input, int k, int width, int height,
+                               const std::vector<std::string>& channels) {
   const Imf::Header& header = input.header(k);
   const auto& window = header.dataWindow();
   // In 64 bits: a damaged window may span more than an int holds.
   const long long found_width = 1LL + window.max.x - window.min.x, found_height = 1LL + window.max.y - window.min.y;
   if (found_width != width || found_height != height || window.min.x != 0 || window.min.y != 0)
-    fail(file, "part " + header.name() + ": size",
-         std::to_string(found_width) + " x " + std::to_string(found_height),
+    fail(file, "part " + header.name() + ": size", std::to_string(found_width) + " x " + std::to_string(found_height),
          std::to_string(width) + " x " + std::to_string(height) + " from 0, 0");
   for (const std::string& c : channels) {
     const Imf::Channel* channel = header.channels().findChannel(c);
@@ -103,7 +101,8 @@ std::vector<float> read_pixels(const std::string& file, Imf::MultiPartInputFile&
   }
   const std::size_t values = channels.size() * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   if (values > most_values)  // a few bytes of a damaged header would ask for all memory
-    fail(file, "part " + header.name() + ": size", std::to_string(values) + " values", "at most " + std::to_string(most_values));
+    fail(file, "part " + header.name() + ": size", std::to_string(values) + " values",
+         "at most " + std::to_string(most_values));
   std::vector<float> pixels(values);
   Imf::InputPart part(input, k);
   part.setFrameBuffer(frame_buffer(channels, width, pixels.data()));
@@ -142,14 +141,17 @@ StackFile load(const std::string& file) {
   result.bsdf.interpolation = choice(file, first, "gonio:interpolation", interpolations, Interpolation::displacement);
   result.bsdf.storage = choice(file, first, "gonio:storage", storages, Storage::float32);
   if (result.bsdf.storage == Storage::packed16 && result.bsdf.interpolation != Interpolation::blend)
-    fail(file, "attribute gonio:interpolation", to_string(result.bsdf.interpolation), "blend with gonio:storage packed16");
+    fail(file, "attribute gonio:interpolation", to_string(result.bsdf.interpolation),
+         "blend with gonio:storage packed16");
 
   for (int k = 0; k < input.parts(); ++k) {
     const Imf::Header& header = input.header(k);
     if (!input.partComplete(k)) fail(file, "part " + header.name(), "an incomplete part", "all its rows");
-    if (!result.bsdf.colour.empty()) fail(file, "part " + header.name(), "a part after colour", "colour to be the last");
+    if (!result.bsdf.colour.empty())
+      fail(file, "part " + header.name(), "a part after colour", "colour to be the last");
     if (header.name() == "colour") {
-      if (result.bsdf.diagrams.theta_i.empty()) fail(file, "part colour", "no diagrams before it", "it to be the last part");
+      if (result.bsdf.diagrams.theta_i.empty())
+        fail(file, "part colour", "no diagrams before it", "it to be the last part");
       auto theta_i = attribute<Imf::FloatVectorAttribute, std::vector<float>>(file, header, "gonio:theta_i");
       const int side = header.dataWindow().max.x < largest_side ? header.dataWindow().max.x + 1 : 0;
       if (side < 2 || theta_i.empty() || theta_i.size() > largest_side)
@@ -157,8 +159,7 @@ StackFile load(const std::string& file) {
       const auto pixels =
           read_pixels(file, input, k, side, static_cast<int>(theta_i.size()) * (side / 2), {"R", "G", "B"});
       std::vector<glm::vec3> values(pixels.size() / 3);
-      for (std::size_t i = 0; i < values.size(); ++i)
-        values[i] = {pixels[3 * i], pixels[3 * i + 1], pixels[3 * i + 2]};
+      for (std::size_t i = 0; i < values.size(); ++i) values[i] = {pixels[3 * i], pixels[3 * i + 1], pixels[3 * i + 2]};
       result.bsdf.colour = Colour(std::move(theta_i), side, values);
       continue;
     }
@@ -196,7 +197,8 @@ void save_stack(const std::filesystem::path& path, const StackFile& file) {
   if (parts.empty()) fail(path.string(), "diagrams", "none", "at least one");
   if (!file.bsdf.colour.empty()) {
     const int side = file.bsdf.colour.side();
-    Part part = make_part("colour", side, static_cast<int>(file.bsdf.colour.theta_i().size()) * (side / 2), {"R", "G", "B"});
+    Part part =
+        make_part("colour", side, static_cast<int>(file.bsdf.colour.theta_i().size()) * (side / 2), {"R", "G", "B"});
     part.header.insert("gonio:theta_i", Imf::FloatVectorAttribute(file.bsdf.colour.theta_i()));
     part.header.insert("gonio:units", Imf::StringAttribute("W = f_r cos(theta_o) / pdf, linear Rec. 709"));
     for (const glm::vec3& w : file.bsdf.colour.values()) part.pixels.insert(part.pixels.end(), {w.r, w.g, w.b});
@@ -212,7 +214,8 @@ void save_stack(const std::filesystem::path& path, const StackFile& file) {
   first.insert("gonio:interpolation", Imf::StringAttribute(to_string(file.bsdf.interpolation)));
   first.insert("gonio:storage", Imf::StringAttribute(to_string(file.bsdf.storage)));
   first.insert("gonio:units", Imf::StringAttribute("pdf per 2 r dr dphi in 1/sr; angles in radians"));
-  first.insert("gonio:layout", Imf::StringAttribute("one part per incident angle: columns r, rows phi in 0..pi, mirrored"));
+  first.insert("gonio:layout",
+               Imf::StringAttribute("one part per incident angle: columns r, rows phi in 0..pi, mirrored"));
 
   // To memory first: OpenEXR finishes its files in destructors, where a full disk goes unnoticed.
   Imf::StdOSStream bytes;
@@ -260,7 +263,8 @@ bool is_exr(const std::filesystem::path& path) {
 
 Bsdf load_bsdf(const std::filesystem::path& path, std::shared_ptr<const BrdfTable> table) {
   const StackFile file = load_stack(path);
-  if (file.bsdf.colour.empty() && !table) fail(path.string(), "part colour", "none", "one (a self-contained stack), or a table");
+  if (file.bsdf.colour.empty() && !table)
+    fail(path.string(), "part colour", "none", "one (a self-contained stack), or a table");
   return Bsdf(file.bsdf, std::move(table));
 }
 

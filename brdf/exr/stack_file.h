@@ -11,9 +11,9 @@ namespace gonio {
 /// A stack of diagrams as an OpenEXR file, readable by any viewer of multi-part images. The layout
 /// is described in docs/stack-file.md.
 struct StackFile {
-  BsdfData bsdf;       ///< densities normalised; without colours f_r is that of the table
-  std::string name;    ///< of the material
-  std::string source;  ///< file the stack was made of, without its folder; empty if unknown
+  BsdfData bsdf;              ///< densities normalised; without colours f_r is that of the table
+  std::string name;           ///< of the material
+  std::string source;         ///< file the stack was made of, without its folder; empty if unknown
   std::string comments = {};  ///< how it was made, who measured it, its licence: lines for people; may be empty
 };
 

@@ -13,9 +13,9 @@ enum class CellPolicy {
 
 /// The policy for each kind of bad cell. NaN and infinite cells are never kept.
 struct CellPolicies {
-  CellPolicy negative = CellPolicy::zero;    ///< small negative values: measurement noise about 0
-  CellPolicy nonfinite = CellPolicy::fill;   ///< NaN, +-Inf
-  CellPolicy missing = CellPolicy::fill;     ///< a format's own mark for "not measured" (MERL: < 0)
+  CellPolicy negative = CellPolicy::zero;   ///< small negative values: measurement noise about 0
+  CellPolicy nonfinite = CellPolicy::fill;  ///< NaN, +-Inf
+  CellPolicy missing = CellPolicy::fill;    ///< a format's own mark for "not measured" (MERL: < 0)
 };
 
 /// How many cells of each kind were met. `total` counts every cell of the table.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+
 #include <glm/vec3.hpp>
 
 namespace gonio {

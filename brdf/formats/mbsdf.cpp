@@ -1,14 +1,14 @@
-#include <gonio/mapping/base/bytes.h>
-#include <gonio/mapping/numeric/fast_math.h>
-#include <gonio/brdf/formats/mbsdf.h>
-#include <gonio/brdf/formats/interpolate.h>
-#include <gonio/brdf/formats/repair.h>
-#include <gonio/mapping/base/atomic_file.h>
-#include <gonio/mapping/base/error.h>
-#include <gonio/mapping/numeric/pi.h>
-
 #include <cmath>
 #include <cstdint>
+
+#include <gonio/brdf/formats/interpolate.h>
+#include <gonio/brdf/formats/mbsdf.h>
+#include <gonio/brdf/formats/repair.h>
+#include <gonio/mapping/base/atomic_file.h>
+#include <gonio/mapping/base/bytes.h>
+#include <gonio/mapping/base/error.h>
+#include <gonio/mapping/numeric/fast_math.h>
+#include <gonio/mapping/numeric/pi.h>
 
 namespace gonio {
 namespace {
@@ -21,12 +21,11 @@ struct Block {
 };
 
 // Reads the binary part that follows a data line. False: a fatal problem was added.
-bool parse_block(ByteReader& reader, const std::string& name, Block& block,
-                 std::vector<Problem>& problems) {
+bool parse_block(ByteReader& reader, const std::string& name, Block& block, std::vector<Problem>& problems) {
   std::uint32_t n[3];  // type, n_theta, n_phi
   if (!reader.read(n, 3)) {
-    problems.push_back({name + " header", std::to_string(reader.remaining()) + " bytes",
-                        "12 bytes (type, n_theta, n_phi)", true});
+    problems.push_back(
+        {name + " header", std::to_string(reader.remaining()) + " bytes", "12 bytes (type, n_theta, n_phi)", true});
     return false;
   }
   const std::size_t before = problems.size();
@@ -35,8 +34,7 @@ bool parse_block(ByteReader& reader, const std::string& name, Block& block,
   }
   const auto check = [&](const char* field, std::uint32_t value) {
     if (value < 1 || value > static_cast<std::uint32_t>(max_grid_side)) {
-      problems.push_back({name + " " + field, std::to_string(value),
-                          "1 to " + std::to_string(max_grid_side), true});
+      problems.push_back({name + " " + field, std::to_string(value), "1 to " + std::to_string(max_grid_side), true});
     }
   };
   check("n_theta", n[1]);
@@ -46,9 +44,8 @@ bool parse_block(ByteReader& reader, const std::string& name, Block& block,
   const std::size_t count = static_cast<std::size_t>(n[1]) * n[1] * n[2] * channels;
   if (count > reader.remaining() / sizeof(float)) {
     problems.push_back({name + " values", std::to_string(reader.remaining()) + " bytes",
-                        std::to_string(count * sizeof(float)) + " bytes for n_theta " +
-                            std::to_string(n[1]) + ", n_phi " + std::to_string(n[2]) + ", " +
-                            std::to_string(channels) + " channel(s)",
+                        std::to_string(count * sizeof(float)) + " bytes for n_theta " + std::to_string(n[1]) +
+                            ", n_phi " + std::to_string(n[2]) + ", " + std::to_string(channels) + " channel(s)",
                         true});
     return false;
   }
@@ -87,8 +84,8 @@ MbsdfFile parse_mbsdf(const std::string& bytes, std::vector<Problem>& problems) 
   while (reader.remaining() > 0) {
     const std::size_t start = reader.position();
     if (!parse_line(reader, line)) {
-      problems.push_back({"header", "binary data at byte " + std::to_string(start),
-                          "lines of text, or the end of the file", true});
+      problems.push_back(
+          {"header", "binary data at byte " + std::to_string(start), "lines of text, or the end of the file", true});
       return file;
     }
     const bool transmission = line == "MBSDF_DATA_TRANSMISSION=";
@@ -109,14 +106,13 @@ MbsdfFile parse_mbsdf(const std::string& bytes, std::vector<Problem>& problems) 
     }
   }
   if (reflection.values.empty()) {
-    problems.push_back({"reflection",
-                        file.has_transmission ? "none (the file holds transmission alone)" : "none",
+    problems.push_back({"reflection", file.has_transmission ? "none (the file holds transmission alone)" : "none",
                         "a part MBSDF_DATA_REFLECTION= or MBSDF_DATA=", true});
     return file;
   }
   if (file.has_transmission) {
-    problems.push_back({"transmission", "a part MBSDF_DATA_TRANSMISSION=",
-                        "reflection alone: transmission is ignored", false});
+    problems.push_back(
+        {"transmission", "a part MBSDF_DATA_TRANSMISSION=", "reflection alone: transmission is ignored", false});
   }
   file.n_theta_in = file.n_theta_out = reflection.n_theta;
   file.n_phi = reflection.n_phi;
@@ -138,16 +134,13 @@ void check_shape(const MbsdfFile& file) {
   const auto side = [](int n) { return n >= 1 && n <= max_grid_side; };
   if (!side(file.n_theta_in) || !side(file.n_theta_out) || !side(file.n_phi) ||
       (file.channels != 1 && file.channels != 3)) {
-    throw Error("dimensions: found " + std::to_string(file.n_theta_in) + " x " +
-                std::to_string(file.n_theta_out) + " x " + std::to_string(file.n_phi) + " x " +
-                std::to_string(file.channels) +
+    throw Error("dimensions: found " + std::to_string(file.n_theta_in) + " x " + std::to_string(file.n_theta_out) +
+                " x " + std::to_string(file.n_phi) + " x " + std::to_string(file.channels) +
                 ", expected sizes of 1 to 16384 and 1 or 3 channels");
   }
-  const std::size_t count =
-      static_cast<std::size_t>(file.n_theta_in) * file.n_theta_out * file.n_phi * file.channels;
+  const std::size_t count = static_cast<std::size_t>(file.n_theta_in) * file.n_theta_out * file.n_phi * file.channels;
   if (file.values.size() != count) {
-    throw Error("values: found " + std::to_string(file.values.size()) + ", expected " +
-                std::to_string(count));
+    throw Error("values: found " + std::to_string(file.values.size()) + ", expected " + std::to_string(count));
   }
 }
 
@@ -160,8 +153,7 @@ void write_mbsdf(const std::filesystem::path& path, const MbsdfFile& file) {
                 std::to_string(file.n_theta_out) + " out, expected the same number");
   }
   write_stream_atomically(path, [&](std::ostream& stream) {
-    const std::uint32_t header[3] = {file.channels == 3 ? 1u : 0u,
-                                     static_cast<std::uint32_t>(file.n_theta_in),
+    const std::uint32_t header[3] = {file.channels == 3 ? 1u : 0u, static_cast<std::uint32_t>(file.n_theta_in),
                                      static_cast<std::uint32_t>(file.n_phi)};
     stream << magic << "MBSDF_DATA_REFLECTION=\n";
     stream.write(reinterpret_cast<const char*>(header), sizeof(header));
@@ -171,7 +163,10 @@ void write_mbsdf(const std::filesystem::path& path, const MbsdfFile& file) {
 }
 
 MbsdfTable::MbsdfTable(const MbsdfFile& file, const CellPolicies& policies)
-    : n_theta_in_(file.n_theta_in), n_theta_out_(file.n_theta_out), n_phi_(file.n_phi), has_transmission_(file.has_transmission) {
+    : n_theta_in_(file.n_theta_in),
+      n_theta_out_(file.n_theta_out),
+      n_phi_(file.n_phi),
+      has_transmission_(file.has_transmission) {
   check_shape(file);
   const auto channels = static_cast<std::size_t>(file.channels);
   cells_.resize(file.values.size() / channels);
@@ -184,10 +179,9 @@ MbsdfTable::MbsdfTable(const MbsdfFile& file, const CellPolicies& policies)
   const auto n_in = static_cast<std::size_t>(n_theta_in_);
   const auto n_out = static_cast<std::size_t>(n_theta_out_);
   const auto n_phi = static_cast<std::size_t>(n_phi_);
-  counts_ = repair_cells(cells_, kinds, policies,
-                         {{n_in * n_out, n_phi, 1, false},
-                          {n_in, n_out, n_phi, false},
-                          {1, n_in, n_out * n_phi, false}});
+  counts_ =
+      repair_cells(cells_, kinds, policies,
+                   {{n_in * n_out, n_phi, 1, false}, {n_in, n_out, n_phi, false}, {1, n_in, n_out * n_phi, false}});
   measured_ = MeasuredCells(cell_origins(kinds, policies), n_theta_out_, n_phi_);
 }
 
@@ -199,9 +193,7 @@ MbsdfTable::Place MbsdfTable::place_of(const glm::vec3& wi, const glm::vec3& wo)
   const auto position = [](float angle, float range, int n) {
     return lerp_clamped(angle * (static_cast<float>(n) / range) - 0.5f, n);
   };
-  const auto theta = [](const glm::vec3& w) {
-    return fast_atan2(std::sqrt(w.x * w.x + w.y * w.y), w.z);
-  };
+  const auto theta = [](const glm::vec3& w) { return fast_atan2(std::sqrt(w.x * w.x + w.y * w.y), w.z); };
   // At the pole, where wi has no azimuth, phi is relative to +x.
   const bool pole = wi.x == 0.0f && wi.y == 0.0f;
   const float ix = pole ? 1.0f : wi.x, iy = pole ? 0.0f : wi.y;
@@ -219,12 +211,10 @@ glm::vec3 MbsdfTable::eval(const glm::vec3& wi, const glm::vec3& wo) const noexc
   const Place place = place_of(wi, wo);
   const Lerp &i = place.i, &o = place.o, &p = place.p;
   const auto row = [&](int in, int out) {
-    const glm::vec3* cells =
-        cells_.data() + (static_cast<std::ptrdiff_t>(in) * n_theta_out_ + out) * n_phi_;
+    const glm::vec3* cells = cells_.data() + (static_cast<std::ptrdiff_t>(in) * n_theta_out_ + out) * n_phi_;
     return lerp(cells[p.lo], cells[p.hi], p.t);
   };
-  return lerp(lerp(row(i.lo, o.lo), row(i.lo, o.hi), o.t),
-              lerp(row(i.hi, o.lo), row(i.hi, o.hi), o.t), i.t);
+  return lerp(lerp(row(i.lo, o.lo), row(i.lo, o.hi), o.t), lerp(row(i.hi, o.lo), row(i.hi, o.hi), o.t), i.t);
 }
 
 }  // namespace gonio

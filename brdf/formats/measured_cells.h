@@ -1,10 +1,10 @@
 #pragma once
 
-#include <gonio/brdf/formats/interpolate.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <vector>
+
+#include <gonio/brdf/formats/interpolate.h>
 
 namespace gonio {
 
@@ -34,8 +34,8 @@ class MeasuredCells {
       const auto weight = [&](const Lerp& l, int bit) { return corner & bit ? l.t : 1.0f - l.t; };
       const auto row = static_cast<std::size_t>(index(a, 1)) * static_cast<std::size_t>(rows_) +
                        static_cast<std::size_t>(index(b, 2));
-      const CellOrigin origin = origins_[row * static_cast<std::size_t>(columns_) +
-                                         static_cast<std::size_t>(index(c, 4))];
+      const CellOrigin origin =
+          origins_[row * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(index(c, 4))];
       if (origin == CellOrigin::outside) continue;
       const float w = weight(a, 1) * weight(b, 2) * weight(c, 4);
       all += w;

@@ -1,19 +1,19 @@
-#include <gonio/mapping/base/bytes.h>
-#include <gonio/mapping/numeric/fast_math.h>
+#include <cmath>
+#include <cstdint>
+
+#include <glm/geometric.hpp>
+
 #include <gonio/brdf/formats/interpolate.h>
 #include <gonio/brdf/formats/merl.h>
 #include <gonio/brdf/formats/repair.h>
 #include <gonio/mapping/base/atomic_file.h>
+#include <gonio/mapping/base/bytes.h>
 #include <gonio/mapping/base/error.h>
+#include <gonio/mapping/numeric/fast_math.h>
 #include <gonio/mapping/numeric/pi.h>
-
-#include <cmath>
-#include <cstdint>
-#include <glm/geometric.hpp>
 
 namespace gonio {
 namespace {
-
 
 std::string dimensions_text(const std::int32_t (&n)[3]) {
   return std::to_string(n[0]) + " x " + std::to_string(n[1]) + " x " + std::to_string(n[2]);
@@ -22,8 +22,7 @@ std::string dimensions_text(const std::int32_t (&n)[3]) {
 // Both directions of a cell centre above the horizon: cos(theta_h) cos(theta_d) is their mean
 // height, sin(theta_h) sin(theta_d) cos(phi_d) half the difference.
 bool above_horizon(double theta_h, double theta_d, double phi_d) {
-  return std::cos(theta_h) * std::cos(theta_d) >
-         std::abs(std::sin(theta_h) * std::sin(theta_d) * std::cos(phi_d));
+  return std::cos(theta_h) * std::cos(theta_d) > std::abs(std::sin(theta_h) * std::sin(theta_d) * std::cos(phi_d));
 }
 
 }  // namespace
@@ -33,8 +32,7 @@ MerlFile parse_merl(const std::string& bytes, std::vector<Problem>& problems) {
   ByteReader reader(bytes);
   std::int32_t n[3] = {0, 0, 0};
   if (!reader.read(n, 3)) {
-    problems.push_back(
-        {"header", std::to_string(bytes.size()) + " bytes", "12 bytes (three int32)", true});
+    problems.push_back({"header", std::to_string(bytes.size()) + " bytes", "12 bytes (three int32)", true});
     return file;
   }
   if (n[0] != MerlFile::n_theta_h || n[1] != MerlFile::n_theta_d || (n[2] != 180 && n[2] != 360)) {
@@ -45,8 +43,7 @@ MerlFile parse_merl(const std::string& bytes, std::vector<Problem>& problems) {
   const std::size_t count = 3 * file.cells();
   if (reader.remaining() != count * sizeof(double)) {
     problems.push_back({"file size", std::to_string(bytes.size()) + " bytes",
-                        std::to_string(12 + count * sizeof(double)) + " bytes for dimensions " +
-                            dimensions_text(n),
+                        std::to_string(12 + count * sizeof(double)) + " bytes for dimensions " + dimensions_text(n),
                         true});
     return file;
   }
@@ -64,9 +61,8 @@ MerlFile read_merl(const std::filesystem::path& path) {
 
 void write_merl(const std::filesystem::path& path, const MerlFile& file) {
   if ((file.n_phi_d != 180 && file.n_phi_d != 360) || file.values.size() != 3 * file.cells()) {
-    throw Error(path.string() + ": values: found " + std::to_string(file.values.size()) +
-                " for n_phi_d " + std::to_string(file.n_phi_d) +
-                ", expected 3 x 90 x 90 x n_phi_d with n_phi_d 180 or 360");
+    throw Error(path.string() + ": values: found " + std::to_string(file.values.size()) + " for n_phi_d " +
+                std::to_string(file.n_phi_d) + ", expected 3 x 90 x 90 x n_phi_d with n_phi_d 180 or 360");
   }
   write_stream_atomically(path, [&](std::ostream& stream) {
     const std::int32_t n[3] = {MerlFile::n_theta_h, MerlFile::n_theta_d, file.n_phi_d};
@@ -93,8 +89,7 @@ HalfDifference half_difference(const glm::vec3& wi, const glm::vec3& wo) noexcep
   // e against the tangent (rising theta_h) and the bitangent of h, both times |h|.
   const float along_tangent = h.z * (hx * e.x + hy * e.y) - h_xy * e.z;
   const float along_bitangent = h_length * (hx * e.y - hy * e.x);
-  return {theta_h, fast_atan2(glm::length(e), h_length),
-          fast_atan2(along_bitangent, along_tangent)};
+  return {theta_h, fast_atan2(glm::length(e), h_length), fast_atan2(along_bitangent, along_tangent)};
 }
 
 void directions_from_half_difference(double theta_h, double theta_d, double phi_d, glm::vec3& wi,
@@ -109,15 +104,13 @@ void directions_from_half_difference(double theta_h, double theta_d, double phi_
 MerlTable::MerlTable(const MerlFile& file, const CellPolicies& policies) : n_phi_d_(file.n_phi_d) {
   const std::size_t n = file.cells();
   if (file.values.size() != 3 * n) {
-    throw Error("values: found " + std::to_string(file.values.size()) + ", expected " +
-                std::to_string(3 * n));
+    throw Error("values: found " + std::to_string(file.values.size()) + ", expected " + std::to_string(3 * n));
   }
   cells_.resize(n);
   std::vector<CellKind> kinds(n);
   for (std::size_t i = 0; i < n; ++i) {
     for (int c = 0; c < 3; ++c) {
-      cells_[i][c] =
-          static_cast<float>(file.values[static_cast<std::size_t>(c) * n + i] * merl_scale[c]);
+      cells_[i][c] = static_cast<float>(file.values[static_cast<std::size_t>(c) * n + i] * merl_scale[c]);
     }
     kinds[i] = kind_of(cells_[i]);
     if (kinds[i] == CellKind::negative) kinds[i] = CellKind::missing;
@@ -134,9 +127,8 @@ MerlTable::MerlTable(const MerlFile& file, const CellPolicies& policies) : n_phi
     }
   }
   const auto n_phi = static_cast<std::size_t>(n_phi_d_);
-  counts_ =
-      repair_cells(cells_, kinds, policies,
-                   {{90, 90, n_phi, false}, {90 * 90, n_phi, 1, true}, {1, 90, 90 * n_phi, false}});
+  counts_ = repair_cells(cells_, kinds, policies,
+                         {{90, 90, n_phi, false}, {90 * 90, n_phi, 1, true}, {1, 90, 90 * n_phi, false}});
   measured_ = MeasuredCells(cell_origins(kinds, policies), MerlFile::n_theta_d, n_phi_d_);
 }
 
@@ -166,8 +158,7 @@ glm::vec3 MerlTable::eval(const glm::vec3& wi, const glm::vec3& wo) const noexce
     const glm::vec3* cells = cells_.data() + (ih * MerlFile::n_theta_d + id) * n_phi_d_;
     return lerp(cells[p.lo], cells[p.hi], p.t);
   };
-  return lerp(lerp(row(h.lo, d.lo), row(h.lo, d.hi), d.t),
-              lerp(row(h.hi, d.lo), row(h.hi, d.hi), d.t), h.t);
+  return lerp(lerp(row(h.lo, d.lo), row(h.lo, d.hi), d.t), lerp(row(h.hi, d.lo), row(h.hi, d.hi), d.t), h.t);
 }
 
 }  // namespace gonio

@@ -1,13 +1,14 @@
 #pragma once
 
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
 #include <gonio/brdf/formats/cell_policies.h>
 #include <gonio/brdf/formats/measured_cells.h>
 #include <gonio/mapping/base/problem.h>
-
-#include <filesystem>
-#include <glm/vec3.hpp>
-#include <string>
-#include <vector>
 
 namespace gonio {
 

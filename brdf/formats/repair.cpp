@@ -1,17 +1,18 @@
-#include <gonio/brdf/formats/repair.h>
-#include <gonio/mapping/base/error.h>
-
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
 #include <string>
+
+#include <glm/common.hpp>
+
+#include <gonio/brdf/formats/repair.h>
+#include <gonio/mapping/base/error.h>
 
 namespace gonio {
 namespace {
 
 void reject(const std::string& name, const char* kind, std::uint64_t count, const CellCounts& counts) {
-  throw Error(name + ": found " + std::to_string(count) + " " + kind + " of " +
-              std::to_string(counts.total) + ", expected none");
+  throw Error(name + ": found " + std::to_string(count) + " " + kind + " of " + std::to_string(counts.total) +
+              ", expected none");
 }
 
 // Fills the holes of every line along one axis that has a filled cell.
@@ -20,9 +21,7 @@ void fill_along(std::vector<glm::vec3>& cells, std::vector<char>& filled, const 
   std::vector<std::ptrdiff_t> sources;
   for (std::size_t line = 0; line < axis.outer * axis.inner; ++line) {
     const std::size_t first = line / axis.inner * axis.n * axis.inner + line % axis.inner;
-    const auto at = [&](std::ptrdiff_t i) {
-      return first + static_cast<std::size_t>(i) * axis.inner;
-    };
+    const auto at = [&](std::ptrdiff_t i) { return first + static_cast<std::size_t>(i) * axis.inner; };
     sources.clear();
     for (std::ptrdiff_t i = 0; i < n; ++i) {
       if (filled[at(i)]) sources.push_back(i);
@@ -56,9 +55,8 @@ CellKind kind_of(const glm::vec3& cell) noexcept {
   return cell.r < 0.0f || cell.g < 0.0f || cell.b < 0.0f ? CellKind::negative : CellKind::valid;
 }
 
-CellCounts repair_cells(std::vector<glm::vec3>& cells, const std::vector<CellKind>& kinds,
-                        const CellPolicies& policies, const std::vector<CellAxis>& axes,
-                        const std::string& name) {
+CellCounts repair_cells(std::vector<glm::vec3>& cells, const std::vector<CellKind>& kinds, const CellPolicies& policies,
+                        const std::vector<CellAxis>& axes, const std::string& name) {
   CellCounts counts;
   counts.total = cells.size();
   for (const CellKind kind : kinds) {
@@ -95,19 +93,16 @@ CellCounts repair_cells(std::vector<glm::vec3>& cells, const std::vector<CellKin
   return counts;
 }
 
-std::vector<CellOrigin> cell_origins(const std::vector<CellKind>& kinds,
-                                     const CellPolicies& policies) {
+std::vector<CellOrigin> cell_origins(const std::vector<CellKind>& kinds, const CellPolicies& policies) {
   const auto origin = [&](CellKind kind) {
     if (kind == CellKind::outside) return CellOrigin::outside;
-    const bool kept = kind == CellKind::valid ||
-                      (kind == CellKind::negative && policies.negative != CellPolicy::fill);
+    const bool kept = kind == CellKind::valid || (kind == CellKind::negative && policies.negative != CellPolicy::fill);
     return kept ? CellOrigin::measured : CellOrigin::made_up;
   };
   std::vector<CellOrigin> origins;
   origins.reserve(kinds.size());
   for (const CellKind kind : kinds) origins.push_back(origin(kind));
-  const bool all = std::all_of(origins.begin(), origins.end(),
-                               [](CellOrigin o) { return o == CellOrigin::measured; });
+  const bool all = std::all_of(origins.begin(), origins.end(), [](CellOrigin o) { return o == CellOrigin::measured; });
   return all ? std::vector<CellOrigin>() : origins;
 }
 

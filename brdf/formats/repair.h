@@ -1,13 +1,14 @@
 #pragma once
 
-#include <gonio/brdf/formats/cell_policies.h>
-#include <gonio/brdf/formats/measured_cells.h>
-
 #include <cstddef>
 #include <cstdint>
-#include <glm/vec3.hpp>
 #include <string>
 #include <vector>
+
+#include <glm/vec3.hpp>
+
+#include <gonio/brdf/formats/cell_policies.h>
+#include <gonio/brdf/formats/measured_cells.h>
 
 namespace gonio {
 
@@ -35,9 +36,8 @@ struct CellAxis {
 /// distance), then along the second axis, and so on.
 /// @param name of the cells, for errors
 /// @throws Error under CellPolicy::reject, or if cells are to be filled and none is valid.
-CellCounts repair_cells(std::vector<glm::vec3>& cells, const std::vector<CellKind>& kinds,
-                        const CellPolicies& policies, const std::vector<CellAxis>& axes,
-                        const std::string& name = "cells");
+CellCounts repair_cells(std::vector<glm::vec3>& cells, const std::vector<CellKind>& kinds, const CellPolicies& policies,
+                        const std::vector<CellAxis>& axes, const std::string& name = "cells");
 
 /// What the same policies make of each cell. A negative value is measured, noise about 0, unless
 /// CellPolicy::fill replaces it; one that is not finite or missing never is. Empty if every cell is

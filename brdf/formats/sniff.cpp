@@ -1,12 +1,12 @@
-#include <gonio/mapping/base/bytes.h>
-#include <gonio/brdf/formats/sniff.h>
-
 #include <algorithm>
 #include <cctype>
 #include <cstdint>
 #include <cstring>
 #include <sstream>
 #include <vector>
+
+#include <gonio/brdf/formats/sniff.h>
+#include <gonio/mapping/base/bytes.h>
 
 namespace gonio {
 namespace {
@@ -58,7 +58,8 @@ bool resembles_ies(const std::vector<std::string>& lines) {
   for (const std::string& line : lines) {
     std::string text;
     for (const char c : line)
-      if (!std::isspace(static_cast<unsigned char>(c))) text += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+      if (!std::isspace(static_cast<unsigned char>(c)))
+        text += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
     if (starts_with(text, "TILT=") || (&line == &lines.front() && starts_with(text, "IESNA"))) return true;
   }
   return false;
@@ -85,7 +86,8 @@ std::string describe(const std::string& head) {
     return "a luminaire, " + kind + (wide ? " in UTF-16" : "") + " (gonio light info takes it)";
   if (wide) return "UTF-16 text (iconv -f UTF-16 -t UTF-8 FILE > NEW writes it as UTF-8)";
   const std::size_t first = head.find_first_not_of(" \t\r\n");
-  if (first != std::string::npos && head[first] == '{') return "a JSON file (gonio info takes fits, gonio render takes scenes)";
+  if (first != std::string::npos && head[first] == '{')
+    return "a JSON file (gonio info takes fits, gonio render takes scenes)";
   std::string shown;
   for (const char c : head.substr(0, 16)) shown += c >= 0x20 && c < 0x7f ? c : '.';
   return "a file that starts with \"" + shown + "\"";
@@ -103,16 +105,21 @@ TableFormat sniff_format(const std::filesystem::path& path) {
 std::string describe_file(const std::filesystem::path& path) {
   const std::string taken = " (gonio info and gonio convert take it)";
   switch (sniff_format(path)) {
-    case TableFormat::merl: return "a measured BRDF, MERL" + taken;
-    case TableFormat::rgl: return "a measured BRDF, RGL" + taken;
-    case TableFormat::mbsdf: return "a measured BRDF, MBSDF" + taken;
-    case TableFormat::unknown: break;
+    case TableFormat::merl:
+      return "a measured BRDF, MERL" + taken;
+    case TableFormat::rgl:
+      return "a measured BRDF, RGL" + taken;
+    case TableFormat::mbsdf:
+      return "a measured BRDF, MBSDF" + taken;
+    case TableFormat::unknown:
+      break;
   }
   return describe(read_bytes(path, 4096));
 }
 
 Problem unknown_format(const std::filesystem::path& path) {
-  return {"format", describe_file(path), "MERL (int32 90 90 180), RGL (\"tensor_file\") or MBSDF (\"NVIDIA ARC MBSDF V1\")", true};
+  return {"format", describe_file(path),
+          "MERL (int32 90 90 180), RGL (\"tensor_file\") or MBSDF (\"NVIDIA ARC MBSDF V1\")", true};
 }
 
 }  // namespace gonio

@@ -1,10 +1,10 @@
-#include <gonio/brdf/ndf/radial_ndf.h>
-#include <gonio/brdf/ndf/radial_nodes.h>
-#include <gonio/mapping/base/error.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+
+#include <gonio/brdf/ndf/radial_ndf.h>
+#include <gonio/brdf/ndf/radial_nodes.h>
+#include <gonio/mapping/base/error.h>
 
 namespace gonio {
 namespace {
@@ -15,8 +15,8 @@ using detail::theta_of;
 
 constexpr double degree = pi<double> / 180;
 
-/// The power iteration for D at nodes, see extract_ndf(). A solver of eigenvalues would not do: how D goes on beyond the
-/// measured angles is not linear in D, and neither is independent masking.
+/// The power iteration for D at nodes, see extract_ndf(). A solver of eigenvalues would not do: how D goes on beyond
+/// the measured angles is not linear in D, and neither is independent masking.
 class Extraction {
  public:
   Extraction(const std::function<double(double)>& retro_reflection, int nodes)
@@ -33,7 +33,8 @@ class Extraction {
         kernel_[j + 1] += t * value;
       });
     }
-    if (measured_.empty()) throw Error("retro-reflection: found none that was measured, expected some to extract normals from");
+    if (measured_.empty())
+      throw Error("retro-reflection: found none that was measured, expected some to extract normals from");
   }
 
   ExtractedNdf iterate(Masking masking) const {
@@ -71,7 +72,8 @@ class Extraction {
   std::vector<double> step(const std::vector<double>& d, Masking masking) const {
     const double area = sigma(d, 0);  // of the surface itself: the normal sees all of it
     std::vector<double> next(n_);
-    for (const std::size_t i : measured_) next[i] = retro_[i] * cosine_[i] * cosine_over_g2(masking, sigma(d, i), area, cosine_[i]);
+    for (const std::size_t i : measured_)
+      next[i] = retro_[i] * cosine_[i] * cosine_over_g2(masking, sigma(d, i), area, cosine_[i]);
     for (std::size_t i = 0; i < measured_.front(); ++i) next[i] = next[measured_.front()];
     for (std::size_t m = 0; m + 1 < measured_.size(); ++m) {
       const std::size_t a = measured_[m], b = measured_[m + 1];
@@ -175,7 +177,8 @@ double median(std::vector<double>& values) {
 /// factor, Fresnel's, for each difference angle. 0 if too few can be compared.
 double misfit(const BrdfTable& table, const ExtractedNdf& found) {
   constexpr std::size_t least = 5;
-  const RadialNdf g1_at_nodes(static_cast<int>(found.ndf.values().size()), [&](double theta) { return found.ndf.g1(theta); });
+  const RadialNdf g1_at_nodes(static_cast<int>(found.ndf.values().size()),
+                              [&](double theta) { return found.ndf.g1(theta); });
   const auto unmasked = [&](const glm::vec3& wi, const glm::vec3& wo) {
     const auto g1 = [&](const glm::vec3& w) { return g1_at_nodes.eval(std::acos(static_cast<double>(w.z))); };
     const double azimuth = std::abs(std::remainder(std::atan2(wi.y, wi.x) - std::atan2(wo.y, wo.x), 2 * pi<double>));
@@ -185,7 +188,8 @@ double misfit(const BrdfTable& table, const ExtractedNdf& found) {
   for (const double theta_d : {5.0, 10.0, 20.0, 30.0}) {
     std::vector<double> logarithms;
     for (double theta_h = 2.5; theta_h < 75; theta_h += 2.5) {
-      const double ratio = mean_over_phi_d(table, theta_h * degree, theta_d * degree, unmasked) / found.ndf.eval(theta_h * degree);
+      const double ratio =
+          mean_over_phi_d(table, theta_h * degree, theta_d * degree, unmasked) / found.ndf.eval(theta_h * degree);
       if (ratio > 0 && std::isfinite(ratio)) logarithms.push_back(std::log(ratio));
     }
     if (logarithms.size() < least) continue;

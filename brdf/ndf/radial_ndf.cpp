@@ -1,10 +1,10 @@
-#include <gonio/brdf/ndf/radial_ndf.h>
-#include <gonio/brdf/ndf/radial_nodes.h>
-#include <gonio/mapping/base/error.h>
-
 #include <algorithm>
 #include <cmath>
 #include <string>
+
+#include <gonio/brdf/ndf/radial_ndf.h>
+#include <gonio/brdf/ndf/radial_nodes.h>
+#include <gonio/mapping/base/error.h>
 
 namespace gonio {
 namespace {

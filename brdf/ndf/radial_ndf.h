@@ -1,9 +1,9 @@
 #pragma once
 
-#include <gonio/brdf/table/table.h>
-
 #include <functional>
 #include <vector>
+
+#include <gonio/brdf/table/table.h>
 
 namespace gonio {
 

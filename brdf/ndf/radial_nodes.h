@@ -1,10 +1,10 @@
 #pragma once
 
-#include <gonio/mapping/charts/concentric.h>
-#include <gonio/mapping/base/error.h>
-
 #include <cmath>
 #include <string>
+
+#include <gonio/mapping/base/error.h>
+#include <gonio/mapping/charts/concentric.h>
 
 /// The nodes of RadialNdf and integrals over them; not installed.
 namespace gonio::detail {
@@ -15,7 +15,8 @@ inline constexpr double gauss_weight[] = {0.173927422568727, 0.326072577431273, 
 
 /// @throws Error if they are fewer than two
 inline int checked_nodes(int nodes) {
-  if (nodes < 2) throw Error("radial normal distribution: found " + std::to_string(nodes) + " nodes, expected 2 or more");
+  if (nodes < 2)
+    throw Error("radial normal distribution: found " + std::to_string(nodes) + " nodes, expected 2 or more");
   return nodes;
 }
 

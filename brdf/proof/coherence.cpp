@@ -1,10 +1,9 @@
-#include <gonio/brdf/proof/coherence.h>
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <iterator>
 
+#include <gonio/brdf/proof/coherence.h>
 #include <gonio/brdf/proof/statistics/random.h>
 
 namespace gonio::proof {
@@ -60,7 +59,8 @@ Coherence measure_coherence(const Subject& subject, double theta_i, int side) {
   const double h = 1.0 / side;
   // Moved by part of a cell: off u = 1, and off the diagonals, where the concentric map has its kinks.
   const auto at = [&](std::size_t i, std::size_t j) {
-    return Point(std::min((static_cast<double>(i) + 0.25) * h, 1 - 0x1p-24), std::min((static_cast<double>(j) + 0.4) * h, 1 - 0x1p-24));
+    return Point(std::min((static_cast<double>(i) + 0.25) * h, 1 - 0x1p-24),
+                 std::min((static_cast<double>(j) + 0.4) * h, 1 - 0x1p-24));
   };
   std::vector<std::optional<BsdfSample>> corner(n * n);
   for (std::size_t i = 0; i < n; ++i)
@@ -71,17 +71,21 @@ Coherence measure_coherence(const Subject& subject, double theta_i, int side) {
   std::uint64_t positive = 0, negative = 0;
   for (std::size_t i = 0; i + 1 < n; ++i) {
     for (std::size_t j = 0; j + 1 < n; ++j) {
-      const auto &a = corner[i * n + j], &b = corner[(i + 1) * n + j], &c = corner[i * n + j + 1], &d = corner[(i + 1) * n + j + 1];
+      const auto &a = corner[i * n + j], &b = corner[(i + 1) * n + j], &c = corner[i * n + j + 1],
+                 &d = corner[(i + 1) * n + j + 1];
       if (!(a && b && c && d)) continue;
-      const double sides[] = {distance(a->wo, b->wo), distance(a->wo, c->wo), distance(b->wo, d->wo), distance(c->wo, d->wo)};
+      const double sides[] = {distance(a->wo, b->wo), distance(a->wo, c->wo), distance(b->wo, d->wo),
+                              distance(c->wo, d->wo)};
       const Point size = at(i + 1, j + 1) - at(i, j);
       const double pdf = (a->pdf + b->pdf + c->pdf + d->pdf) / 4.0;
       stretch.push_back(*std::max_element(sides, sides + 4) / std::sqrt(size.x * size.y / pdf));
-      const bool apart = torn(map, at(i, j), at(i + 1, j), a->wo, b->wo), aside = torn(map, at(i, j), at(i, j + 1), a->wo, c->wo);
+      const bool apart = torn(map, at(i, j), at(i + 1, j), a->wo, b->wo),
+                 aside = torn(map, at(i, j), at(i, j + 1), a->wo, c->wo);
       result.tears += apart + aside;
       if (apart || aside) continue;
       // Orientation by small corners of the cell: a larger one may be bent. What is turned inside out is so at every
-      // size and to both sides; a corner that lies on a kink of the map may look so at every size, but to one side alone.
+      // size and to both sides; a corner that lies on a kink of the map may look so at every size, but to one side
+      // alone.
       const auto orientation = [&](double share) {
         const auto right = map(at(i, j) + Point(share * size.x, 0)), up = map(at(i, j) + Point(0, share * size.y));
         if (!(right && up)) return 0;
@@ -92,7 +96,8 @@ Coherence measure_coherence(const Subject& subject, double theta_i, int side) {
       };
       const int sign = orientation(1.0 / 64);
       constexpr double others[] = {1.0 / 512, 1.0 / 2048, -1.0 / 512, -1.0 / 2048};
-      if (sign != 0 && std::all_of(std::begin(others), std::end(others), [&](double share) { return orientation(share) == sign; }))
+      if (sign != 0 &&
+          std::all_of(std::begin(others), std::end(others), [&](double share) { return orientation(share) == sign; }))
         ++(sign > 0 ? positive : negative);
     }
   }

@@ -1,12 +1,12 @@
-#include <gonio/brdf/proof/edges.h>
-
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
 #include <limits>
 #include <sstream>
 #include <vector>
 
+#include <glm/common.hpp>
+
+#include <gonio/brdf/proof/edges.h>
 #include <gonio/brdf/proof/incident.h>
 #include <gonio/brdf/proof/statistics/random.h>
 
@@ -32,10 +32,11 @@ std::string text(const glm::vec2& u) {
 }
 
 bool good(const BsdfSample& s, Domain domain) {
-  const double length2 = static_cast<double>(s.wo.x) * s.wo.x + static_cast<double>(s.wo.y) * s.wo.y + static_cast<double>(s.wo.z) * s.wo.z;
+  const double length2 = static_cast<double>(s.wo.x) * s.wo.x + static_cast<double>(s.wo.y) * s.wo.y +
+                         static_cast<double>(s.wo.z) * s.wo.z;
   const float least = std::min({s.weight.x, s.weight.y, s.weight.z});
-  return std::abs(length2 - 1) < 1e-5 && (s.wo.z > 0 || domain == Domain::sphere) && s.pdf > 0 && std::isfinite(s.pdf) && least >= 0 &&
-         std::isfinite(s.weight.x + s.weight.y + s.weight.z);
+  return std::abs(length2 - 1) < 1e-5 && (s.wo.z > 0 || domain == Domain::sphere) && s.pdf > 0 &&
+         std::isfinite(s.pdf) && least >= 0 && std::isfinite(s.weight.x + s.weight.y + s.weight.z);
 }
 
 }  // namespace
@@ -46,8 +47,10 @@ EdgeScan scan_edges(const Subject& subject, double theta_i, const EdgeOptions& o
   double interior = 0;
   for (int i = 0; i < options.interior; ++i)
     for (int j = 0; j < options.interior; ++j) {
-      const glm::vec2 u = (glm::vec2(static_cast<float>(i), static_cast<float>(j)) + random.pair()) / static_cast<float>(options.interior);
-      if (const auto s = subject.sample(wi, glm::clamp(u, margin, 1 - margin))) interior = std::max<double>(interior, luminance(s->weight));
+      const glm::vec2 u = (glm::vec2(static_cast<float>(i), static_cast<float>(j)) + random.pair()) /
+                          static_cast<float>(options.interior);
+      if (const auto s = subject.sample(wi, glm::clamp(u, margin, 1 - margin)))
+        interior = std::max<double>(interior, luminance(s->weight));
     }
 
   EdgeScan scan;
@@ -101,7 +104,8 @@ DirectionScan scan_directions(const Subject& subject, double theta_i, int side) 
   const double cell = 2 * pi<double> / (static_cast<double>(side) * side);
   for (int j = 0; j < side; ++j)
     for (int i = 0; i < side; ++i)
-      look((static_cast<float>(j) + 0.5f) / static_cast<float>(side), (static_cast<float>(i) + 0.5f) / static_cast<float>(side), cell);
+      look((static_cast<float>(j) + 0.5f) / static_cast<float>(side),
+           (static_cast<float>(i) + 0.5f) / static_cast<float>(side), cell);
   for (int k = 0; k < side; ++k) {
     const float z = std::exp2(-6 - 17 * static_cast<float>(k) / static_cast<float>(side));
     for (int i = 0; i < side; i += 8) look(1 - z, (static_cast<float>(i) + 0.5f) / static_cast<float>(side), 0);

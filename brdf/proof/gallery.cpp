@@ -1,5 +1,3 @@
-#include <gonio/brdf/proof/gallery.h>
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -7,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include <gonio/brdf/proof/gallery.h>
 #include <gonio/brdf/proof/statistics/random.h>
 
 namespace gonio::proof {
@@ -76,7 +75,8 @@ MbsdfFile table(const std::function<double(double theta_in, double theta_out, do
   for (int i = 0; i < 24; ++i)
     for (int o = 0; o < 24; ++o)
       for (int p = 0; p < 24; ++p) {
-        const auto value = static_cast<float>(f(centre(i, pi<double> / 2), centre(o, pi<double> / 2), centre(p, pi<double>)));
+        const auto value =
+            static_cast<float>(f(centre(i, pi<double> / 2), centre(o, pi<double> / 2), centre(p, pi<double>)));
         file.values.insert(file.values.end(), {value, value, value});
       }
   return file;
@@ -107,29 +107,42 @@ std::vector<GalleryStack> gallery_stacks() {
     g.push_back({name, reason, std::move(grid), zero_regions});
   };
 
-  add("constant", "the map is the identity, every root formula divides by a difference that is 0", stack([](const Crossing&) { return 1.0; }, phi, r));
+  add("constant", "the map is the identity, every root formula divides by a difference that is 0",
+      stack([](const Crossing&) { return 1.0; }, phi, r));
   add("ramp-r", "mass r^3: closed form; no density at the pole", stack([](const Crossing& c) { return c.r; }, phi, r));
   add("ramp-phi", "mass phi^2: closed form; hardly any density on the first meridian",
       stack([](const Crossing& c) { return c.phi + 0.05; }, phi, r));
-  add("ramp-horizon", "what every cosine does: 0 on the last parallel", stack([](const Crossing& c) { return 1 - c.r; }, phi, r));
+  add("ramp-horizon", "what every cosine does: 0 on the last parallel",
+      stack([](const Crossing& c) { return 1 - c.r; }, phi, r));
   add("zero-corner", "one crossing without density: slopes of the map are infinite in one point",
       stack(zero_where([](const Crossing& c) { return c.meridian == 5 && c.parallel == 8; }), phi, r));
   add("zero-edge", "two neighbouring crossings: infinite slopes along an edge",
-      stack(zero_where([](const Crossing& c) { return c.meridian == 5 && (c.parallel == 8 || c.parallel == 9); }), phi, r));
+      stack(zero_where([](const Crossing& c) { return c.meridian == 5 && (c.parallel == 8 || c.parallel == 9); }), phi,
+            r));
   add("zero-patch", "a patch that must never be drawn (Fig. 6d)",
-      stack(zero_where([](const Crossing& c) { return c.meridian >= 5 && c.meridian <= 7 && c.parallel >= 8 && c.parallel <= 10; }), phi, r), true);
+      stack(zero_where([](const Crossing& c) {
+              return c.meridian >= 5 && c.meridian <= 7 && c.parallel >= 8 && c.parallel <= 10;
+            }),
+            phi, r),
+      true);
   add("zero-patch-sometimes", "a patch in every other diagram: displacement meets a jump in one of its two maps",
       stack(zero_where([](const Crossing& c) {
               return c.diagram % 2 == 1 && c.meridian >= 5 && c.meridian <= 7 && c.parallel >= 8 && c.parallel <= 10;
-            }), phi, r), true);
-  add("zero-meridian", "a marginal of 0 (and so is the pole): the conditional is 0/0 there, and jumps from one side to the other",
+            }),
+            phi, r),
+      true);
+  add("zero-meridian",
+      "a marginal of 0 (and so is the pole): the conditional is 0/0 there, and jumps from one side to the other",
       stack(zero_where([](const Crossing& c) { return c.meridian == 6 || c.parallel == 0; }), phi, r), true);
   add("zero-parallel", "a ring without density, of measure 0",
       stack(zero_where([](const Crossing& c) { return c.parallel == 8; }), phi, r));
   add("zero-sector", "two neighbouring meridians without density: the marginal has a gap",
-      stack(zero_where([](const Crossing& c) { return c.parallel == 0 || (c.meridian >= 5 && c.meridian <= 7); }), phi, r), true);
+      stack(zero_where([](const Crossing& c) { return c.parallel == 0 || (c.meridian >= 5 && c.meridian <= 7); }), phi,
+            r),
+      true);
   add("spike", "one crossing 10^4 above the rest: nearly all (u, v) in four cells",
-      stack([](const Crossing& c) { return c.meridian == 4 + c.diagram && c.parallel == 9 ? 1e4 : 1.0; }, phi, r), true);
+      stack([](const Crossing& c) { return c.meridian == 4 + c.diagram && c.parallel == 9 ? 1e4 : 1.0; }, phi, r),
+      true);
   Random random(12);
   const auto decades = [&](const Crossing&) { return std::pow(10.0, -12.0 * random()); };
   add("decades", "twelve decades at random: sums that swallow, differences that cancel", stack(decades, phi, r), true);
@@ -138,14 +151,18 @@ std::vector<GalleryStack> gallery_stacks() {
   add("coincident-lines", "irregular lines, some 4e-6 apart: widths of a few ulp",
       stack(ordinary, doubled(pi<double>, 13, 4e-6), doubled(1, 15, 4e-6)));
   add("ring", "a narrow ring about the pole, where phi means little",
-      stack([](const Crossing& c) { return std::exp(-std::pow((c.r - 0.06 - 0.02 * c.theta_i) / 0.02, 2)) + 1e-3; }, phi, crowded(1, 25, 2.5)));
+      stack([](const Crossing& c) { return std::exp(-std::pow((c.r - 0.06 - 0.02 * c.theta_i) / 0.02, 2)) + 1e-3; },
+            phi, crowded(1, 25, 2.5)));
   add("seam", "a lobe across phi = 0 = 2 pi of a full diagram",
-      stack([](const Crossing& c) { return lobe(c, 0.3 + 0.3 * c.theta_i, 0.1, 0.15) + 0.01; }, even(2 * pi<double>, 33), r));
-  add("horizon", "a lobe cut by the horizon", stack([](const Crossing& c) { return lobe(c, 1, pi<double> - 0.2 * c.theta_i, 0.15) + 0.01; }, phi, r));
+      stack([](const Crossing& c) { return lobe(c, 0.3 + 0.3 * c.theta_i, 0.1, 0.15) + 0.01; },
+            even(2 * pi<double>, 33), r));
+  add("horizon", "a lobe cut by the horizon",
+      stack([](const Crossing& c) { return lobe(c, 1, pi<double> - 0.2 * c.theta_i, 0.15) + 0.01; }, phi, r));
   add("rotating", "a lobe that goes around with theta_i: displacement's worst case",
       stack([](const Crossing& c) { return lobe(c, 0.6, 0.2 + 2 * c.theta_i, 0.2) + 0.01; }, even(pi<double>, 21), r));
   add("retro", "a lobe back to the source, at phi = 0",
-      stack([](const Crossing& c) { return lobe(c, theta_to_radius(c.theta_i), 0, 0.12) + 0.01; }, crowded(pi<double>, 17, 1.5), r));
+      stack([](const Crossing& c) { return lobe(c, theta_to_radius(c.theta_i), 0, 0.12) + 0.01; },
+            crowded(pi<double>, 17, 1.5), r));
   add("specular", "a lobe in the mirror direction that leaves the pole", stack(ordinary, phi, r));
   Random noise(5);
   add("noise", "white noise: no two cells alike", stack([&](const Crossing&) { return noise() + 0.05; }, phi, r));
@@ -161,23 +178,32 @@ std::vector<GalleryTable> gallery_tables() {
   const auto add = [&](const char* name, const char* reason, MbsdfFile file, bool zero_regions = false) {
     g.push_back({name, reason, std::move(file), zero_regions});
   };
-  add("lambert", "albedo exactly 0.5: every factor of pi, cosine and 2 shows", table([](double, double, double) { return 0.5 / pi<double>; }));
-  add("zero-table", "reflects nothing: no density to scale, weights are 0", table([](double, double, double) { return 0.0; }));
+  add("lambert", "albedo exactly 0.5: every factor of pi, cosine and 2 shows",
+      table([](double, double, double) { return 0.5 / pi<double>; }));
+  add("zero-table", "reflects nothing: no density to scale, weights are 0",
+      table([](double, double, double) { return 0.0; }));
   add("zero-diagram", "reflects nothing at some incident angles, something at their neighbours",
       table([](double i, double, double) { return i > 0.6 && i < 0.9 ? 0.0 : 0.3; }), true);
   add("zero-half", "reflects nothing on one side: f_r is 0 over half of the hemisphere",
       table([](double, double, double phi) { return phi < pi<double> / 2 ? 0.0 : 0.3; }), true);
-  add("spike", "one cell 10^3 above the rest at every incident angle",
-      table([n = 0](double, double, double) mutable { const int k = n++ % (24 * 24); return k == 9 * 24 + 15 ? 200.0 : 0.2; }));
-  add("retro", "reflects back to the source", table([](double i, double o, double phi) { return 3 * table_lobe(o, phi, i, 0, 0.2) + 0.02; }));
+  add("spike", "one cell 10^3 above the rest at every incident angle", table([n = 0](double, double, double) mutable {
+        const int k = n++ % (24 * 24);
+        return k == 9 * 24 + 15 ? 200.0 : 0.2;
+      }));
+  add("retro", "reflects back to the source",
+      table([](double i, double o, double phi) { return 3 * table_lobe(o, phi, i, 0, 0.2) + 0.02; }));
   add("specular", "a glossy lobe in the mirror direction, strong near the horizon",
       table([](double i, double o, double phi) { return 3 * table_lobe(o, phi, i, pi<double>, 0.2) + 0.02; }));
-  add("horizon", "a lobe that stays at the horizon", table([](double, double o, double phi) { return 3 * table_lobe(o, phi, 1.5, 2.5, 0.3) + 0.02; }));
-  add("rotating", "a lobe that goes around with theta_i", table([](double i, double o, double phi) { return 3 * table_lobe(o, phi, 0.8, 0.2 + 1.7 * i, 0.3) + 0.02; }));
+  add("horizon", "a lobe that stays at the horizon",
+      table([](double, double o, double phi) { return 3 * table_lobe(o, phi, 1.5, 2.5, 0.3) + 0.02; }));
+  add("rotating", "a lobe that goes around with theta_i",
+      table([](double i, double o, double phi) { return 3 * table_lobe(o, phi, 0.8, 0.2 + 1.7 * i, 0.3) + 0.02; }));
   add("asymmetric", "f_r(wi, wo) is far from f_r(wo, wi): swapped arguments show",
-      table([](double i, double o, double phi) { return 0.05 + 0.3 * (pi<double> / 2 - i) * o + 0.05 * std::cos(phi); }));
+      table(
+          [](double i, double o, double phi) { return 0.05 + 0.3 * (pi<double> / 2 - i) * o + 0.05 * std::cos(phi); }));
   Random random(3);
-  add("noise", "white noise over three decades", table([&](double, double, double) { return std::pow(10.0, -3.0 * random()); }));
+  add("noise", "white noise over three decades",
+      table([&](double, double, double) { return std::pow(10.0, -3.0 * random()); }));
   MbsdfFile bad = table([](double, double o, double) { return 0.2 + 0.1 * o; });
   for (std::size_t k = 0; k < bad.values.size(); ++k) {
     if (k % 97 == 0) bad.values[k] = -0.1f;
@@ -189,7 +215,8 @@ std::vector<GalleryTable> gallery_tables() {
 }
 
 BrdfTable to_table(const GalleryTable& entry) {
-  return BrdfTable(MbsdfTable(entry.file), {entry.name, entry.name, "mbsdf", entry.reason, entry.file.values.size() * sizeof(float), {}});
+  return BrdfTable(MbsdfTable(entry.file),
+                   {entry.name, entry.name, "mbsdf", entry.reason, entry.file.values.size() * sizeof(float), {}});
 }
 
 }  // namespace gonio::proof

@@ -18,5 +18,4 @@ inline testing::AssertionResult sampler_invariants_hold(const Subject& subject, 
 
 /// Expects every invariant of gonio::proof::check_invariants(): a Subject, the incident angle [rad] and,
 /// optionally, InvariantOptions.
-#define EXPECT_THAT_SAMPLER_INVARIANTS_HOLD(...) \
-  EXPECT_TRUE(::gonio::proof::sampler_invariants_hold(__VA_ARGS__))
+#define EXPECT_THAT_SAMPLER_INVARIANTS_HOLD(...) EXPECT_TRUE(::gonio::proof::sampler_invariants_hold(__VA_ARGS__))

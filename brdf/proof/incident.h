@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+
 #include <glm/vec3.hpp>
 
 namespace gonio::proof {

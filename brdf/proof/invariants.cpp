@@ -1,5 +1,3 @@
-#include <gonio/brdf/proof/invariants.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +8,7 @@
 #include <gonio/brdf/proof/coherence.h>
 #include <gonio/brdf/proof/edges.h>
 #include <gonio/brdf/proof/incident.h>
+#include <gonio/brdf/proof/invariants.h>
 #include <gonio/brdf/proof/statistics/random.h>
 
 namespace gonio::proof {
@@ -52,7 +51,8 @@ struct Worst {
 /// the function differs more. What is continuous comes down, cube roots to 1/40; a jump stays.
 /// `difference` is that of two values, `size` that of the larger.
 template <class Value>
-bool has_jump(const std::function<Value(double)>& function, const std::function<double(const Value&, const Value&)>& difference,
+bool has_jump(const std::function<Value(double)>& function,
+              const std::function<double(const Value&, const Value&)>& difference,
               const std::function<double(const Value&, const Value&)>& size) {
   double a = 0, b = 1;
   Value fa = function(a), fb = function(b);
@@ -73,7 +73,9 @@ bool has_jump(const std::function<Value(double)>& function, const std::function<
 bool density_jumps(const std::function<double(double)>& density, double floor) {
   return has_jump<double>(
       density, [](const double& a, const double& b) { return std::abs(a - b); },
-      [floor](const double& a, const double& b) { return std::max({a, b, floor}); });
+      [floor](const double& a, const double& b) {
+        return std::max({a, b, floor});
+      });
 }
 
 class Run {
@@ -109,7 +111,8 @@ class Run {
   }
 
   static bool good(const BsdfSample& s) {
-    const double length2 = static_cast<double>(s.wo.x) * s.wo.x + static_cast<double>(s.wo.y) * s.wo.y + static_cast<double>(s.wo.z) * s.wo.z;
+    const double length2 = static_cast<double>(s.wo.x) * s.wo.x + static_cast<double>(s.wo.y) * s.wo.y +
+                           static_cast<double>(s.wo.z) * s.wo.z;
     return std::abs(length2 - 1) < 1e-5 && s.wo.z > 0 && s.pdf > 0 && std::isfinite(s.pdf) &&
            std::isfinite(s.weight.x + s.weight.y + s.weight.z);
   }
@@ -142,7 +145,8 @@ class Run {
     double mean = 0;
     for (const Point& p : points_) mean += luminance(p.s.weight) / static_cast<double>(points_.size());
     const bool reflects = s_.f_r && mean > 0;
-    const Bins bins = Bins::adapted([&](const glm::vec3& wo) { return pdf(wo) + (reflects ? luminance(reflected(wo)) / mean : 0); });
+    const Bins bins =
+        Bins::adapted([&](const glm::vec3& wo) { return pdf(wo) + (reflects ? luminance(reflected(wo)) / mean : 0); });
 
     // Of the direction, then of the weight.
     std::array<double, 6> sum{}, sum2{};
@@ -157,7 +161,8 @@ class Run {
       }
       return s->wo;
     };
-    const ChiSquare chi2 = chi_square(draw, [&](const glm::vec3& wo) { return pdf(wo); }, bins, o_.draws);
+    const ChiSquare chi2 = chi_square(
+        draw, [&](const glm::vec3& wo) { return pdf(wo); }, bins, o_.draws);
 
     const double significance = sidak(o_.significance, 7 * o_.runs);
     at_most("domain", static_cast<double>(bad_ + chi2.outside), 0, where_bad_);
@@ -172,7 +177,8 @@ class Run {
     // The quadratures are good to some 1e-4; a difference below that says nothing.
     const auto p_value = [](double total, double total2, double count, double expected, double slack) {
       if (count < 2) return 1.0;
-      const double found = total / count, error = std::sqrt(std::max(total2 / count - found * found, 0.0) / (count - 1));
+      const double found = total / count,
+                   error = std::sqrt(std::max(total2 / count - found * found, 0.0) / (count - 1));
       const double away = std::max(std::abs(found - expected) - slack, 0.0);
       return away > 0 ? std::erfc(away / error / std::sqrt(2.0)) : 1.0;
     };
@@ -180,7 +186,8 @@ class Run {
     const double drawn = static_cast<double>(o_.draws - chi2.empty);
     double least = 1;
     if (drawn > 0 && chi2.pdf_integral > 0) {
-      const glm::dvec3 expected = bins.integrate_rgb([&](const glm::vec3& w) { return w * static_cast<float>(pdf(w)); });
+      const glm::dvec3 expected =
+          bins.integrate_rgb([&](const glm::vec3& w) { return w * static_cast<float>(pdf(w)); });
       for (int c = 0; c < 3; ++c)
         least = std::min(least, p_value(sum[c], sum2[c], drawn, expected[c] / chi2.pdf_integral, quadrature_error));
     }
@@ -191,7 +198,8 @@ class Run {
       glm::dvec3 found;
       for (int c = 0; c < 3; ++c) {
         found[c] = sum[3 + c] / static_cast<double>(o_.draws);
-        least_p = std::min(least_p, p_value(sum[3 + c], sum2[3 + c], static_cast<double>(o_.draws), albedo[c], 5 * quadrature_error * albedo[c]));
+        least_p = std::min(least_p, p_value(sum[3 + c], sum2[3 + c], static_cast<double>(o_.draws), albedo[c],
+                                            5 * quadrature_error * albedo[c]));
       }
       std::ostringstream note;
       note << "of the draws " << text(glm::vec3(found)) << ", by quadrature " << text(glm::vec3(albedo));
@@ -204,7 +212,8 @@ class Run {
     constexpr float step = 0x1p-22f;
     std::vector<BsdfSample> draws{s};
     for (const glm::vec2& shift : {glm::vec2(step, 0), glm::vec2(-step, 0), glm::vec2(0, step), glm::vec2(0, -step)}) {
-      const glm::vec2 next(std::clamp(u.x + shift.x, 0.0f, 1 - 0x1p-24f), std::clamp(u.y + shift.y, 0.0f, 1 - 0x1p-24f));
+      const glm::vec2 next(std::clamp(u.x + shift.x, 0.0f, 1 - 0x1p-24f),
+                           std::clamp(u.y + shift.y, 0.0f, 1 - 0x1p-24f));
       if (const auto d = s_.sample(wi_, next)) draws.push_back(*d);
     }
     return draws;
@@ -361,7 +370,8 @@ class Run {
       }
     }
     if (o_.symmetric) at_most("mirror", mirror.value, 1, "in units of the pdf bound, " + mirror.where);
-    if (has_azimuth) at_most("rotation", rotation.value, 1, "in units of the pdf and round-trip bounds, " + rotation.where);
+    if (has_azimuth)
+      at_most("rotation", rotation.value, 1, "in units of the pdf and round-trip bounds, " + rotation.where);
   }
 
   void continuity() {
@@ -380,7 +390,9 @@ class Run {
     for (std::size_t k = 0; k < places; ++k) {
       const Point& p = points_[points_.size() - 1 - k];
       const Polar<double> at = direction_to_polar(glm::dvec3(p.s.wo));
-      const auto density = [&](double r, double phi) { return pdf(glm::vec3(polar_to_direction(Polar<double>{r, phi}))); };
+      const auto density = [&](double r, double phi) {
+        return pdf(glm::vec3(polar_to_direction(Polar<double>{r, phi})));
+      };
       along([&](double t) { return s_.pdf(incident(from + t * (to - from)), p.s.wo); }, p.s.wo, "theta_i");
       along([&](double t) { return density(at.r, at.phi + 0.2 * (t - 0.5)); }, p.s.wo, "phi");
       along([&](double t) { return density(at.r, pi<double> + 0.1 * (t - 0.5)); }, p.s.wo, "phi = pi");
@@ -399,9 +411,11 @@ class Run {
           [](const glm::vec3&, const glm::vec3&) { return 0.01; });
     }
     at_most("jumps", static_cast<double>(jumps) / static_cast<double>(std::max<std::size_t>(tried, 1)), 0.02, where);
-    at_most("jumps_of_map", static_cast<double>(jumps_of_map) / static_cast<double>(std::max<std::size_t>(places, 1)), 0);
+    at_most("jumps_of_map", static_cast<double>(jumps_of_map) / static_cast<double>(std::max<std::size_t>(places, 1)),
+            0);
     const Coherence coherence = measure_coherence(s_, theta_i_);
-    at_most("tears", static_cast<double>(coherence.tears + coherence.folds), 0, std::to_string(coherence.folds) + " of them folds");
+    at_most("tears", static_cast<double>(coherence.tears + coherence.folds), 0,
+            std::to_string(coherence.folds) + " of them folds");
   }
 
   const Subject& s_;

@@ -11,9 +11,9 @@ namespace gonio::proof {
 
 /// One thing that every correct sampler does, checked.
 struct Check {
-  std::string name;     ///< see check_invariants()
-  double value;         ///< what was found
-  double bound;         ///< what it is compared with
+  std::string name;  ///< see check_invariants()
+  double value;      ///< what was found
+  double bound;      ///< what it is compared with
   bool passed;
   std::string message;  ///< value, bound and the worst case in words, one line
 };
@@ -28,21 +28,21 @@ struct InvariantOptions {
   double significance = 0.01;
   int runs = 1;
 
-  bool one_to_one = true;    ///< invert() is the only pre-image; false for a mixture
-  bool turns = true;         ///< draws turn with wi; false for samplers that do not look at wi
-  bool symmetric = true;     ///< pdf and map are mirrored at the plane of incidence
-  bool continuous = true;    ///< the density has no jumps, at theta_i neither; the map of the square has no tears
-                             ///< or folds (see Coherence)
+  bool one_to_one = true;  ///< invert() is the only pre-image; false for a mixture
+  bool turns = true;       ///< draws turn with wi; false for samplers that do not look at wi
+  bool symmetric = true;   ///< pdf and map are mirrored at the plane of incidence
+  bool continuous = true;  ///< the density has no jumps, at theta_i neither; the map of the square has no tears
+                           ///< or folds (see Coherence)
 
-  double mass_bound = 1e-3;        ///< of |integral of the pdf + share of empty draws - 1|
+  double mass_bound = 1e-3;  ///< of |integral of the pdf + share of empty draws - 1|
   /// Of the returned pdf against pdf(): relative, and in units of the largest density met, besides what
   /// rounding of (u, v) and wo makes of them. (Next to the horizon v and r have few digits left.)
   double pdf_bound = 2e-3, pdf_floor = 1e-4;
   double weight_bound = 1e-4;      ///< relative, of the weight against f_r cos theta_o / pdf
   double round_trip_bound = 1e-4;  ///< of (u, v), absolute, besides rounding of wo
   double direction_bound = 5e-4;   ///< of directions, absolute, besides rounding of (u, v)
-  /// Next to the sides of the square (scan_edges()): of the returned pdf over pdf(), or its inverse, and of the largest weight
-  /// over the largest one in the interior.
+  /// Next to the sides of the square (scan_edges()): of the returned pdf over pdf(), or its inverse, and of the largest
+  /// weight over the largest one in the interior.
   double edge_pdf_bound = 1.1, edge_weight_bound = 2;
   /// Of the largest weight of any direction (scan_directions()), over the mean one. Infinite: not looked at.
   double direction_weight_bound = std::numeric_limits<double>::infinity();
@@ -66,8 +66,10 @@ struct InvariantOptions {
 /// - `albedo`: the same of the mean weight (each channel) against the quadrature of f_r cos theta_o.
 /// - `pdf`: the returned pdf against pdf(), in units of the pdf bounds.
 /// - `weight`: the weight against f_r cos theta_o / pdf, relative.
-/// - `edge_domain`, `edge_pdf`, `edge_weight`: draws next to the sides of the square, at all distances from them: the number of
-///   draws that are none, the pdf and the weight; see scan_edges() and the bounds above. Weights where there is f_r alone.
+/// - `edge_domain`, `edge_pdf`, `edge_weight`: draws next to the sides of the square, at all distances from them: the
+/// number of
+///   draws that are none, the pdf and the weight; see scan_edges() and the bounds above. Weights where there is f_r
+///   alone.
 /// - `directions`: the largest weight f_r cos theta_o / pdf of any direction, whether a draw falls there or not.
 /// - `support`: share of the albedo at directions with f_r > 0 and pdf = 0; 0.
 /// - `round_trip_square`: |invert(sample(u, v)) - (u, v)|, the largest component.

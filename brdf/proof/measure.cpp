@@ -1,12 +1,11 @@
-#include <gonio/brdf/proof/measure.h>
-
 #include <algorithm>
 #include <cmath>
 
-#include <gonio/brdf/value/frame.h>
 #include <gonio/brdf/proof/edges.h>
 #include <gonio/brdf/proof/incident.h>
+#include <gonio/brdf/proof/measure.h>
 #include <gonio/brdf/proof/statistics/random.h>
+#include <gonio/brdf/value/frame.h>
 
 namespace gonio::proof {
 namespace {
@@ -59,7 +58,8 @@ Subject subject_of(const PackedStack& stack) { return subject_of_stack(stack); }
 glm::dvec3 albedo(const Subject& subject, double theta_i) {
   const glm::vec3 wi = incident(theta_i);
   const auto value = [&](const glm::vec3& wo) { return subject.f_r(wi, wo) * wo.z; };
-  return Bins::adapted([&](const glm::vec3& wo) { return static_cast<double>(luminance(value(wo))); }).integrate_rgb(value);
+  return Bins::adapted([&](const glm::vec3& wo) { return static_cast<double>(luminance(value(wo))); })
+      .integrate_rgb(value);
 }
 
 Quality measure(const Subject& subject, double theta_i, const MeasureOptions& options) {
@@ -74,7 +74,8 @@ Quality measure(const Subject& subject, double theta_i, const MeasureOptions& op
   for (int i = 0; i < options.grid; ++i) {
     for (int j = 0; j < options.grid; ++j) {
       const glm::vec2 jitter = random.pair();
-      const auto s = subject.sample(wi, {(static_cast<float>(i) + jitter.x) / side, (static_cast<float>(j) + jitter.y) / side});
+      const auto s =
+          subject.sample(wi, {(static_cast<float>(i) + jitter.x) / side, (static_cast<float>(j) + jitter.y) / side});
       if (!s) {
         ++empty;
         continue;

@@ -1,12 +1,13 @@
 #pragma once
 
 #include <functional>
-#include <glm/vec3.hpp>
 #include <optional>
 
-#include <gonio/brdf/proof/statistics/chi_square.h>
+#include <glm/vec3.hpp>
+
 #include <gonio/brdf/bsdf/bsdf.h>
 #include <gonio/brdf/proof/samplers/stack_bsdf.h>
+#include <gonio/brdf/proof/statistics/chi_square.h>
 #include <gonio/mapping/stack/packed_stack.h>
 
 namespace gonio::proof {
@@ -40,23 +41,23 @@ Subject subject_of(const Stack<float>& stack);
 Subject subject_of(const PackedStack& stack);
 
 struct MeasureOptions {
-  int grid = 256;                        ///< relvar is measured on grid x grid jittered points of the square
-  std::uint64_t chi2_draws = 1u << 18;   ///< independent draws of the goodness-of-fit test
+  int grid = 256;                       ///< relvar is measured on grid x grid jittered points of the square
+  std::uint64_t chi2_draws = 1u << 18;  ///< independent draws of the goodness-of-fit test
   std::uint32_t seed = 1;
   std::optional<glm::dvec3> albedo_table;  ///< where albedo() is known already: subjects of one table share it
 };
 
 /// How well a sampler does at one incident angle.
 struct Quality {
-  double theta_i;             ///< [rad]
-  double relvar;              ///< Var[w] / E[w]^2 of the luminance weight w; 0 is perfect; empty draws count as 0
-  double max_weight;          ///< the largest luminance weight of the draws over the mean one
+  double theta_i;               ///< [rad]
+  double relvar;                ///< Var[w] / E[w]^2 of the luminance weight w; 0 is perfect; empty draws count as 0
+  double max_weight;            ///< the largest luminance weight of the draws over the mean one
   double max_direction_weight;  ///< the same of any direction: what light sampling meets; see scan_directions()
-  double invalid_fraction;    ///< share of empty draws
-  double pdf_integral;        ///< by quadrature of pdf(), no draw involved
-  glm::dvec3 albedo;          ///< mean weight: the albedo as the sampler estimates it
-  glm::dvec3 albedo_table;    ///< the integral of f_r cos theta_o by quadrature, no sampler involved
-  ChiSquare chi2;             ///< of sample() against pdf()
+  double invalid_fraction;      ///< share of empty draws
+  double pdf_integral;          ///< by quadrature of pdf(), no draw involved
+  glm::dvec3 albedo;            ///< mean weight: the albedo as the sampler estimates it
+  glm::dvec3 albedo_table;      ///< the integral of f_r cos theta_o by quadrature, no sampler involved
+  ChiSquare chi2;               ///< of sample() against pdf()
 };
 
 /// The integral of f_r cos theta_o at theta_i [rad] in [0, pi/2), by quadrature adapted to it.

@@ -1,35 +1,35 @@
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
 #include <gonio/brdf/ndf/radial_ndf.h>
-#include <gonio/mapping/base/parallel.h>
 #include <gonio/brdf/resample/rgl_resample.h>
 #include <gonio/brdf/table/table.h>
 #include <gonio/mapping/base/error.h>
+#include <gonio/mapping/base/parallel.h>
 #include <gonio/mapping/numeric/pi.h>
-
-#include <algorithm>
-#include <cmath>
-#include <glm/common.hpp>
-#include <glm/geometric.hpp>
-#include <memory>
 
 namespace gonio {
 namespace {
 
-constexpr int radial_nodes = 256;           // of ndf and sigma
-constexpr double ndf_floor = 0.01;          // share of a Lambertian's normals
-constexpr double cosine_floor = 1e-3;       // share of a cosine lobe in both densities
+constexpr int radial_nodes = 256;      // of ndf and sigma
+constexpr double ndf_floor = 0.01;     // share of a Lambertian's normals
+constexpr double cosine_floor = 1e-3;  // share of a cosine lobe in both densities
 constexpr double last_incident = 89 * pi<double> / 180;
 constexpr std::size_t first_incident = 24;  // every four degrees and the last
 constexpr double least_interval = 0.1 * pi<double> / 180;
-constexpr double mass_tolerance = 0.0005;   // of the pdf below the horizon, between incident angles
-constexpr int samples_per_cell = 3;         // along each side
+constexpr double mass_tolerance = 0.0005;  // of the pdf below the horizon, between incident angles
+constexpr int samples_per_cell = 3;        // along each side
 
 // A normal of the file's chart, u_theta = sqrt(2 theta / pi), u_phi = (phi + pi) / (2 pi), and what
 // it reflects.
 struct Reflection {
   Reflection(const glm::dvec3& wi, double u_theta, double u_phi) {
     const double theta = pi<double> / 2 * u_theta * u_theta, phi = (2 * u_phi - 1) * pi<double>;
-    const glm::dvec3 m(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
-                       std::cos(theta));
+    const glm::dvec3 m(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
     cosine = glm::dot(wi, m);
     wo = 2.0 * cosine * m - wi;
     jacobian = 4 * cosine * 2 * pi<double> * pi<double> * u_theta * std::sin(theta);
@@ -48,9 +48,7 @@ double lerp_row(const RglFile::Grid& grid, double x) {
   return (1 - t) * grid.values[i] + t * grid.values[i + 1];
 }
 
-glm::vec3 incident(double theta) {
-  return glm::vec3(glm::dvec3(std::sin(theta), 0.0, std::cos(theta)));
-}
+glm::vec3 incident(double theta) { return glm::vec3(glm::dvec3(std::sin(theta), 0.0, std::cos(theta))); }
 
 // One incident angle of the file.
 struct Slice {
@@ -61,8 +59,7 @@ struct Slice {
 
 class Resampler {
  public:
-  Resampler(const Reflectance& f_r, std::string description, const RglSize& size)
-      : f_r_(f_r), size_(size) {
+  Resampler(const Reflectance& f_r, std::string description, const RglSize& size) : f_r_(f_r), size_(size) {
     head_.description = std::move(description);
     const RadialNdf ndf = microfacets();
     head_.ndf = head_.sigma = {1, 2, radial_nodes, {}};
@@ -90,9 +87,7 @@ class Resampler {
     file.colour_height = file.colour_width = size_.side;
     for (const Slice* slice : slices) {
       file.theta_i.push_back(static_cast<float>(slice->theta_i));
-      const auto append = [](auto& to, const auto& from) {
-        to.insert(to.end(), from.begin(), from.end());
-      };
+      const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
       append(file.vndf.values, slice->vndf);
       append(file.luminance.values, slice->luminance);
       append(file.colour, slice->colour);
@@ -138,9 +133,8 @@ class Resampler {
     // Without retro-reflection the choice is free.
     if (!(largest > 0)) return RadialNdf(radial_nodes, [](double) { return 1 / pi<double>; });
     const RadialNdf found = extract_ndf(retro, Masking::full, radial_nodes).ndf;
-    return RadialNdf(radial_nodes, [&](double theta) {
-      return (1 - ndf_floor) * found.eval(theta) + ndf_floor / pi<double>;
-    });
+    return RadialNdf(radial_nodes,
+                     [&](double theta) { return (1 - ndf_floor) * found.eval(theta) + ndf_floor / pi<double>; });
   }
 
   glm::dvec3 transfer(const glm::vec3& wi, const glm::dvec3& wo) const {
@@ -221,7 +215,10 @@ class Resampler {
         const auto at = [](int k) { return (k % samples_per_cell + 0.5) / samples_per_cell; };
         Sample s{static_cast<std::size_t>(j / samples_per_cell) * static_cast<std::size_t>(side) +
                      static_cast<std::size_t>(i / samples_per_cell),
-                 at(i), at(j), 0.0, {}};
+                 at(i),
+                 at(j),
+                 0.0,
+                 {}};
         double wanted = 0;
         if (above) {
           s.colour = colour_of(r, p.x);
@@ -271,15 +268,14 @@ class Resampler {
 RglFile resample_as_rgl(const Reflectance& f_r, std::string description, const RglSize& size,
                         const Progress& progress) {
   if (size.side < 2 || size.vndf < 4 || size.incident < first_incident) {
-    throw Error("RGL file: found " + std::to_string(size.side) + " nodes of luminance, " +
-                std::to_string(size.vndf) + " of vndf, " + std::to_string(size.incident) +
-                " incident angles, expected at least 2, 4 and 24");
+    throw Error("RGL file: found " + std::to_string(size.side) + " nodes of luminance, " + std::to_string(size.vndf) +
+                " of vndf, " + std::to_string(size.incident) + " incident angles, expected at least 2, 4 and 24");
   }
   const Resampler resampler(f_r, std::move(description), size);
   std::vector<std::unique_ptr<Slice>> slices(first_incident);
   parallel_for(slices.size(), [&](std::size_t k) {
-    slices[k] = std::make_unique<Slice>(
-        resampler.slice(std::min(static_cast<double>(k) * pi<double> / 45, last_incident)));
+    slices[k] =
+        std::make_unique<Slice>(resampler.slice(std::min(static_cast<double>(k) * pi<double> / 45, last_incident)));
   });
   // Halves the intervals whose middle gains most from a slice of its own, half of the best gain and
   // above at a time. What did not gain enough is not asked again.
@@ -295,9 +291,8 @@ RglFile resample_as_rgl(const Reflectance& f_r, std::string description, const R
     parallel_for(middles.size(), [&](std::size_t k) {
       Middle& middle = middles[k];
       if (middle.slice) return;
-      const auto lower = std::find_if(slices.begin(), slices.end(), [&](const auto& slice) {
-        return slice->theta_i == middle.left;
-      });
+      const auto lower =
+          std::find_if(slices.begin(), slices.end(), [&](const auto& slice) { return slice->theta_i == middle.left; });
       const Slice &a = **lower, &b = **(lower + 1);
       const double theta_i = (a.theta_i + b.theta_i) / 2;
       middle.slice = std::make_unique<Slice>(resampler.slice(theta_i));
@@ -309,8 +304,7 @@ RglFile resample_as_rgl(const Reflectance& f_r, std::string description, const R
                                 (between.mass - own.mass) / mass_tolerance});
       }
     });
-    std::sort(middles.begin(), middles.end(),
-              [](const Middle& a, const Middle& b) { return a.gain > b.gain; });
+    std::sort(middles.begin(), middles.end(), [](const Middle& a, const Middle& b) { return a.gain > b.gain; });
     const double enough = std::max(middles.front().gain / 2, 1.0);
     std::vector<Middle> next;
     for (Middle& middle : middles) {
@@ -325,8 +319,7 @@ RglFile resample_as_rgl(const Reflectance& f_r, std::string description, const R
     }
     if (next.empty()) break;
     middles = std::move(next);
-    std::sort(slices.begin(), slices.end(),
-              [](const auto& a, const auto& b) { return a->theta_i < b->theta_i; });
+    std::sort(slices.begin(), slices.end(), [](const auto& a, const auto& b) { return a->theta_i < b->theta_i; });
   }
   std::vector<const Slice*> all;
   for (const auto& slice : slices) all.push_back(slice.get());

@@ -1,11 +1,12 @@
 #pragma once
 
+#include <functional>
+#include <string>
+
+#include <glm/vec3.hpp>
+
 #include <gonio/brdf/formats/rgl/rgl.h>
 #include <gonio/mapping/base/progress.h>
-
-#include <functional>
-#include <glm/vec3.hpp>
-#include <string>
 
 namespace gonio {
 

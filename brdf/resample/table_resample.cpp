@@ -1,15 +1,14 @@
-#include <gonio/mapping/base/parallel.h>
-#include <gonio/brdf/resample/table_resample.h>
-#include <gonio/mapping/base/error.h>
-#include <gonio/mapping/numeric/pi.h>
-
 #include <algorithm>
 #include <cmath>
 #include <string>
 
+#include <gonio/brdf/resample/table_resample.h>
+#include <gonio/mapping/base/error.h>
+#include <gonio/mapping/base/parallel.h>
+#include <gonio/mapping/numeric/pi.h>
+
 namespace gonio {
 namespace {
-
 
 // Samples at the cell centres of MERL; negative where a direction is at or below the horizon.
 std::vector<glm::vec3> merl_centres(const BrdfTable& table, const MerlFile& file) {
@@ -39,8 +38,7 @@ glm::vec3 second_differences(const std::vector<glm::vec3>& f_r, std::size_t i, s
   const std::size_t h = i / n_phi / MerlFile::n_theta_d, plane = n_phi * MerlFile::n_theta_d;
   glm::vec3 sum(0.0f);
   const auto add = [&](std::size_t below, std::size_t above) {
-    if (f_r[below].r >= 0.0f && f_r[above].r >= 0.0f)
-      sum += f_r[below] - 2.0f * f_r[i] + f_r[above];
+    if (f_r[below].r >= 0.0f && f_r[above].r >= 0.0f) sum += f_r[below] - 2.0f * f_r[i] + f_r[above];
   };
   if (h > 0 && h + 1 < MerlFile::n_theta_h) add(i - plane, i + plane);
   if (d > 0 && d + 1 < MerlFile::n_theta_d) add(i - n_phi, i + n_phi);
@@ -69,8 +67,7 @@ MerlFile sample_as_merl(const BrdfTable& table, int n_phi_d) {
       value -= second_differences(f_r, i, static_cast<std::size_t>(n_phi_d)) / 12.0f;
     }
     for (int c = 0; c < 3; ++c) {
-      file.values[static_cast<std::size_t>(c) * n + i] =
-          above ? std::max(value[c], 0.0f) / merl_scale[c] : -1.0;
+      file.values[static_cast<std::size_t>(c) * n + i] = above ? std::max(value[c], 0.0f) / merl_scale[c] : -1.0;
     }
   }
   return file;
@@ -94,8 +91,8 @@ MbsdfFile sample_as_mbsdf(const BrdfTable& table, int n_theta, int n_phi) {
       const double theta_o = (out + 0.5) * pi<double> / 2 / n_theta;
       for (int p = 0; p < n_phi; ++p) {
         const double phi = (p + 0.5) * pi<double> / n_phi;
-        const glm::vec3 wo(glm::dvec3(std::sin(theta_o) * std::cos(phi),
-                                      std::sin(theta_o) * std::sin(phi), std::cos(theta_o)));
+        const glm::vec3 wo(
+            glm::dvec3(std::sin(theta_o) * std::cos(phi), std::sin(theta_o) * std::sin(phi), std::cos(theta_o)));
         const glm::vec3 f_r = table.eval(wi, wo);
         for (int c = 0; c < 3; ++c) *value++ = f_r[c];
       }
@@ -108,8 +105,7 @@ void write_table_as_merl(const BrdfTable& table, const std::filesystem::path& pa
   write_merl(path, sample_as_merl(table, n_phi_d));
 }
 
-void write_table_as_mbsdf(const BrdfTable& table, const std::filesystem::path& path, int n_theta,
-                          int n_phi) {
+void write_table_as_mbsdf(const BrdfTable& table, const std::filesystem::path& path, int n_theta, int n_phi) {
   write_mbsdf(path, sample_as_mbsdf(table, n_theta, n_phi));
 }
 

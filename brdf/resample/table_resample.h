@@ -1,10 +1,10 @@
 #pragma once
 
+#include <filesystem>
+
 #include <gonio/brdf/formats/mbsdf.h>
 #include <gonio/brdf/formats/merl.h>
 #include <gonio/brdf/table/table.h>
-
-#include <filesystem>
 
 namespace gonio {
 
@@ -24,11 +24,9 @@ MerlFile sample_as_merl(const BrdfTable& table, int n_phi_d = 360);
 MbsdfFile sample_as_mbsdf(const BrdfTable& table, int n_theta, int n_phi);
 
 /// sample_as_merl and write_merl.
-void write_table_as_merl(const BrdfTable& table, const std::filesystem::path& path,
-                         int n_phi_d = 360);
+void write_table_as_merl(const BrdfTable& table, const std::filesystem::path& path, int n_phi_d = 360);
 
 /// sample_as_mbsdf and write_mbsdf.
-void write_table_as_mbsdf(const BrdfTable& table, const std::filesystem::path& path,
-                          int n_theta = 90, int n_phi = 180);
+void write_table_as_mbsdf(const BrdfTable& table, const std::filesystem::path& path, int n_theta = 90, int n_phi = 180);
 
 }  // namespace gonio

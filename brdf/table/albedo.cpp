@@ -1,7 +1,7 @@
+#include <cmath>
+
 #include <gonio/brdf/table/albedo.h>
 #include <gonio/mapping/numeric/pi.h>
-
-#include <cmath>
 
 namespace gonio {
 
@@ -15,8 +15,7 @@ glm::vec3 directional_albedo(const BrdfTable& table, float theta_i, int resoluti
     const double solid_angle = std::sin(theta_h) * (pi<double> * s / n_theta) * (2 * pi<double> / n_phi);
     for (int j = 0; j < n_phi; ++j) {
       const double phi_h = 2 * pi<double> * (j + 0.5) / n_phi;
-      const glm::dvec3 h(std::sin(theta_h) * std::cos(phi_h), std::sin(theta_h) * std::sin(phi_h),
-                         std::cos(theta_h));
+      const glm::dvec3 h(std::sin(theta_h) * std::cos(phi_h), std::sin(theta_h) * std::sin(phi_h), std::cos(theta_h));
       const double cosine = wi.x * h.x + wi.z * h.z;
       const glm::dvec3 wo = 2.0 * cosine * h - wi;
       if (cosine <= 0.0 || wo.z <= 0.0) continue;

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <gonio/brdf/table/table.h>
-
 #include <glm/vec3.hpp>
+
+#include <gonio/brdf/table/table.h>
 
 namespace gonio {
 

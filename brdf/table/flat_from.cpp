@@ -1,7 +1,7 @@
-#include <gonio/brdf/table/flat_from.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include <gonio/brdf/table/flat_from.h>
 
 namespace gonio {
 namespace {

@@ -1,7 +1,7 @@
+#include <cmath>
+
 #include <gonio/brdf/table/measured_to.h>
 #include <gonio/mapping/charts/concentric.h>
-
-#include <cmath>
 
 namespace gonio {
 namespace {

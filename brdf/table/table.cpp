@@ -1,7 +1,7 @@
-#include <gonio/mapping/base/bytes.h>
-#include <gonio/brdf/value/frame.h>
 #include <gonio/brdf/formats/sniff.h>
 #include <gonio/brdf/table/table.h>
+#include <gonio/brdf/value/frame.h>
+#include <gonio/mapping/base/bytes.h>
 #include <gonio/mapping/base/error.h>
 
 namespace gonio {

@@ -2,10 +2,11 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <glm/vec3.hpp>
 #include <memory>
 #include <string>
 #include <variant>
+
+#include <glm/vec3.hpp>
 
 #include <gonio/brdf/formats/mbsdf.h>
 #include <gonio/brdf/formats/merl.h>
@@ -26,12 +27,12 @@ class BrdfTable {
   using Data = std::variant<MerlTable, RglTable, MbsdfTable>;
 
   struct Info {
-    std::string name;           ///< file name without folder and extension
-    std::string source;         ///< path as it was given
-    std::string format;         ///< "merl", "rgl" or "mbsdf"
-    std::string description;    ///< free text of the file, empty where the format has none
-    std::uint64_t source_bytes; ///< size of the file
-    CellCounts cells;           ///< cells seen and repaired while loading
+    std::string name;            ///< file name without folder and extension
+    std::string source;          ///< path as it was given
+    std::string format;          ///< "merl", "rgl" or "mbsdf"
+    std::string description;     ///< free text of the file, empty where the format has none
+    std::uint64_t source_bytes;  ///< size of the file
+    CellCounts cells;            ///< cells seen and repaired while loading
   };
 
   BrdfTable(Data data, Info info) : data_(std::move(data)), info_(std::move(info)) {}

@@ -1,12 +1,12 @@
-#include <gonio/brdf/table/albedo.h>
-#include <gonio/mapping/base/bytes.h>
-#include <gonio/brdf/formats/sniff.h>
-#include <gonio/brdf/table/validate.h>
-#include <gonio/mapping/base/error.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+
+#include <gonio/brdf/formats/sniff.h>
+#include <gonio/brdf/table/albedo.h>
+#include <gonio/brdf/table/validate.h>
+#include <gonio/mapping/base/bytes.h>
+#include <gonio/mapping/base/error.h>
 
 namespace gonio {
 namespace {
@@ -18,9 +18,8 @@ bool any_fatal(const std::vector<Problem>& problems) {
 void check_cells(const CellCounts& cells, std::vector<Problem>& problems) {
   const auto report = [&](const char* kind, std::uint64_t count) {
     if (count == 0) return;
-    problems.push_back({"cells",
-                        std::to_string(count) + " " + kind + " of " + std::to_string(cells.total),
-                        "none", false});
+    problems.push_back(
+        {"cells", std::to_string(count) + " " + kind + " of " + std::to_string(cells.total), "none", false});
   };
   report("negative", cells.negative);
   report("not finite", cells.nonfinite);
@@ -38,10 +37,10 @@ void check_albedo(const BrdfTable& table, std::vector<Problem>& problems) {
     largest = std::max(largest, highest);
     if (!(highest > limit)) continue;
     char text[64];
-    std::snprintf(text, sizeof(text), "%.4f %.4f %.4f", static_cast<double>(albedo.r),
-                  static_cast<double>(albedo.g), static_cast<double>(albedo.b));
-    problems.push_back({"albedo at " + std::to_string(degrees) + " degrees", text,
-                        "at most 1 in every channel", false});
+    std::snprintf(text, sizeof(text), "%.4f %.4f %.4f", static_cast<double>(albedo.r), static_cast<double>(albedo.g),
+                  static_cast<double>(albedo.b));
+    problems.push_back(
+        {"albedo at " + std::to_string(degrees) + " degrees", text, "at most 1 in every channel", false});
   }
   if (largest == 0.0f) {
     problems.push_back({"albedo", "0 at every angle", "a material that reflects", false});

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <gonio/mapping/base/problem.h>
-
 #include <filesystem>
 #include <vector>
+
+#include <gonio/mapping/base/problem.h>
 
 namespace gonio {
 

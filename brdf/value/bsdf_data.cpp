@@ -1,7 +1,6 @@
-#include <gonio/brdf/value/bsdf_data.h>
-
 #include <string>
 
+#include <gonio/brdf/value/bsdf_data.h>
 #include <gonio/mapping/base/error.h>
 #include <gonio/mapping/stack/packed_stack.h>
 
@@ -10,7 +9,8 @@ namespace gonio {
 Stack<float> sampled_stack(const BsdfData& data) {
   if (data.storage == Storage::float32) return Stack<float>(data.diagrams, data.interpolation);
   if (data.interpolation != Interpolation::blend)
-    throw Error(std::string("stack: interpolation: found ") + to_string(data.interpolation) + ", expected blend, the only one of packed16");
+    throw Error(std::string("stack: interpolation: found ") + to_string(data.interpolation) +
+                ", expected blend, the only one of packed16");
   return Stack<float>(PackedStack(data.diagrams).grid(), Interpolation::blend);
 }
 

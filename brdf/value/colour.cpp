@@ -1,13 +1,12 @@
-#include <gonio/brdf/value/colour.h>
-
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <string>
 
-#include <gonio/mapping/numeric/code16.h>
+#include <gonio/brdf/value/colour.h>
 #include <gonio/mapping/base/error.h>
 #include <gonio/mapping/charts/folded_disk.h>
+#include <gonio/mapping/numeric/code16.h>
 
 namespace gonio {
 namespace {
@@ -41,21 +40,23 @@ Colour::Colour(std::vector<float> theta_i, int side, const std::vector<glm::vec3
   codes_.reserve(3 * values.size() + 1);
   for (const glm::vec3& w : values)
     for (int c = 0; c < 3; ++c)
-      codes_.push_back(largest_ > 0 ? encode16(static_cast<double>(w[c]) / static_cast<double>(largest_)) : std::uint16_t{0});
+      codes_.push_back(largest_ > 0 ? encode16(static_cast<double>(w[c]) / static_cast<double>(largest_))
+                                    : std::uint16_t{0});
   codes_.push_back(0);
 }
 
 std::vector<glm::vec3> Colour::values() const {
   std::vector<glm::vec3> values(cells());
-  for (std::size_t i = 0; i < 3 * values.size(); ++i) values[i / 3][static_cast<int>(i % 3)] = largest_ * decode16(codes_[i]);
+  for (std::size_t i = 0; i < 3 * values.size(); ++i)
+    values[i / 3][static_cast<int>(i % 3)] = largest_ * decode16(codes_[i]);
   return values;
 }
 
 glm::vec3 Colour::eval(float theta_i, SquarePoint<float> at) const noexcept {
   const auto [k, alpha] = bracket(theta_i_, theta_i);
   const float x = std::clamp(at.u * static_cast<float>(side_) - 0.5f, 0.0f, static_cast<float>(side_ - 1));
-  const float y = std::clamp((std::abs(at.v - 0.5f)) * static_cast<float>(side_) - 0.5f, 0.0f,
-                             static_cast<float>(side_ / 2 - 1));
+  const float y =
+      std::clamp((std::abs(at.v - 0.5f)) * static_cast<float>(side_) - 0.5f, 0.0f, static_cast<float>(side_ / 2 - 1));
   const int i = std::min(static_cast<int>(x), side_ - 2), j = std::min(static_cast<int>(y), std::max(side_ / 2 - 2, 0));
   const float a = x - static_cast<float>(i), b = y - static_cast<float>(j);
   const int below = side_ > 2 ? 3 * side_ : 0, behind = theta_i_.size() > 1 ? 3 * side_ * (side_ / 2) : 0;

@@ -2,8 +2,9 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <glm/vec3.hpp>
 #include <vector>
+
+#include <glm/vec3.hpp>
 
 #include <gonio/mapping/charts/concentric.h>
 

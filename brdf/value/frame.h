@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+
 #include <glm/vec3.hpp>
 
 #include <gonio/mapping/numeric/fast_math.h>

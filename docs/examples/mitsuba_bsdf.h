@@ -1,9 +1,9 @@
 #pragma once
 
-#include <gonio/brdf/bsdf/bsdf.h>
-
 #include <cmath>
 #include <utility>
+
+#include <gonio/brdf/bsdf/bsdf.h>
 
 #include "mitsuba_interface.h"  // in Mitsuba: <mitsuba/render/bsdf.h>
 
@@ -15,9 +15,8 @@ class GonioBSDF final : public mitsuba::BSDF {
     m_flags = mitsuba::GlossyReflection | mitsuba::FrontSide | (two_sided ? mitsuba::BackSide : 0u);
   }
 
-  std::pair<mitsuba::BSDFSample, mitsuba::Spectrum> sample(
-      const mitsuba::SurfaceInteraction& si, mitsuba::Float,
-      const mitsuba::Point2f& u) const override {
+  std::pair<mitsuba::BSDFSample, mitsuba::Spectrum> sample(const mitsuba::SurfaceInteraction& si, mitsuba::Float,
+                                                           const mitsuba::Point2f& u) const override {
     const bool below = si.wi.z < 0;
     if (below && !two_sided_) return {};
     const auto s = bsdf_.sample(up(si.wi, below), {u.x, u.y});
@@ -30,15 +29,13 @@ class GonioBSDF final : public mitsuba::BSDF {
     return {bs, spectrum(s->weight)};
   }
 
-  mitsuba::Spectrum eval(const mitsuba::SurfaceInteraction& si,
-                         const mitsuba::Vector3f& wo) const override {
+  mitsuba::Spectrum eval(const mitsuba::SurfaceInteraction& si, const mitsuba::Vector3f& wo) const override {
     const bool below = si.wi.z < 0;
     if (below && !two_sided_) return {};
     return spectrum(bsdf_.eval(up(si.wi, below), up(wo, below)) * std::abs(wo.z));
   }
 
-  mitsuba::Float pdf(const mitsuba::SurfaceInteraction& si,
-                     const mitsuba::Vector3f& wo) const override {
+  mitsuba::Float pdf(const mitsuba::SurfaceInteraction& si, const mitsuba::Vector3f& wo) const override {
     const bool below = si.wi.z < 0;
     return below && !two_sided_ ? 0.0f : bsdf_.pdf(up(si.wi, below), up(wo, below));
   }

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <gonio/brdf/bsdf/bsdf.h>
-
 #include <cmath>
 #include <utility>
+
+#include <gonio/brdf/bsdf/bsdf.h>
 
 #include "pbrt_interface.h"  // in pbrt: <pbrt/materials.h>
 
@@ -22,9 +22,8 @@ class GonioBxDF {
     return spectrum(bsdf_->eval(up(wo, wo), up(wi, wo)));  // 0 if one is below
   }
 
-  std::optional<pbrt::BSDFSample> Sample_f(
-      pbrt::Vector3f wo, pbrt::Float, pbrt::Point2f u, pbrt::TransportMode,
-      pbrt::BxDFReflTransFlags what = pbrt::BxDFReflTransFlags::All) const {
+  std::optional<pbrt::BSDFSample> Sample_f(pbrt::Vector3f wo, pbrt::Float, pbrt::Point2f u, pbrt::TransportMode,
+                                           pbrt::BxDFReflTransFlags what = pbrt::BxDFReflTransFlags::All) const {
     if (!reflects(what)) return {};
     const auto s = bsdf_->sample(up(wo, wo), {u.x, u.y});
     if (!s) return {};
@@ -44,7 +43,7 @@ class GonioBxDF {
   }
 
   pbrt::Float Roughness() const { return bsdf_->roughness(); }  // as alpha
-  void Regularize() {}  // measured: wider lobes would be another material
+  void Regularize() {}                                          // measured: wider lobes would be another material
 
  private:
   static bool reflects(pbrt::BxDFReflTransFlags what) {

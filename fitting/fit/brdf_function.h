@@ -1,10 +1,11 @@
 #pragma once
 
-#include <gonio/brdf/table/table.h>
-
 #include <functional>
-#include <glm/vec3.hpp>
 #include <limits>
+
+#include <glm/vec3.hpp>
+
+#include <gonio/brdf/table/table.h>
 
 namespace gonio {
 

@@ -1,7 +1,7 @@
+#include <cmath>
+
 #include <gonio/fitting/fit/delta_e.h>
 #include <gonio/mapping/charts/concentric.h>
-
-#include <cmath>
 
 namespace gonio {
 
@@ -19,9 +19,7 @@ glm::dvec3 lab_from_rgb(const glm::dvec3& rgb) noexcept {
 
 double delta_e_2000(const glm::dvec3& lab1, const glm::dvec3& lab2) noexcept {
   constexpr double turn = 2 * pi<double>, degree = pi<double> / 180;
-  const auto seventh = [](double c) {
-    return std::sqrt(std::pow(c, 7) / (std::pow(c, 7) + std::pow(25.0, 7)));
-  };
+  const auto seventh = [](double c) { return std::sqrt(std::pow(c, 7) / (std::pow(c, 7) + std::pow(25.0, 7))); };
   const double c_mean = (std::hypot(lab1.y, lab1.z) + std::hypot(lab2.y, lab2.z)) / 2;
   const double g = 0.5 * (1 - seventh(c_mean));
   const double a1 = (1 + g) * lab1.y, a2 = (1 + g) * lab2.y;
@@ -45,8 +43,7 @@ double delta_e_2000(const glm::dvec3& lab1, const glm::dvec3& lab2) noexcept {
   const double dl = lab2.x - lab1.x, dc = c2 - c1, dhh = 2 * std::sqrt(c1 * c2) * std::sin(dh / 2);
   const double l_mean = (lab1.x + lab2.x) / 2, cp_mean = (c1 + c2) / 2;
   const double t = 1 - 0.17 * std::cos(h_mean - 30 * degree) + 0.24 * std::cos(2 * h_mean) +
-                   0.32 * std::cos(3 * h_mean + 6 * degree) -
-                   0.20 * std::cos(4 * h_mean - 63 * degree);
+                   0.32 * std::cos(3 * h_mean + 6 * degree) - 0.20 * std::cos(4 * h_mean - 63 * degree);
   const double bell = (h_mean / degree - 275) / 25;
   const double rotation = -std::sin(60 * degree * std::exp(-bell * bell)) * 2 * seventh(cp_mean);
   const double l50 = (l_mean - 50) * (l_mean - 50);

@@ -1,12 +1,13 @@
-#include <gonio/mapping/base/parallel.h>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <glm/common.hpp>
+
 #include <gonio/fitting/fit/delta_e.h>
 #include <gonio/fitting/fit/errors.h>
 #include <gonio/fitting/fit/half_vectors.h>
-
-#include <algorithm>
-#include <cmath>
-#include <glm/common.hpp>
-#include <vector>
+#include <gonio/mapping/base/parallel.h>
 
 namespace gonio {
 namespace {
@@ -26,8 +27,7 @@ struct Row {  // of one incident angle
 
 bool measured(const glm::dvec3& f) { return !std::isnan(f.r + f.g + f.b); }
 
-Row integrate_row(const BrdfFunction& table, const BrdfFunction& model, double theta_i,
-                  double cutoff) {
+Row integrate_row(const BrdfFunction& table, const BrdfFunction& model, double theta_i, double cutoff) {
   constexpr double log_offset = 1e-3;
   const double lowest = std::cos(cutoff);
   const glm::dvec3 wi(std::sin(theta_i), 0, std::cos(theta_i));
@@ -75,16 +75,14 @@ double albedo_difference(const BrdfFunction& table, const BrdfFunction& model, d
 
 // The largest of them from first to last: the best of equal steps, ends included, then nearer and
 // nearer about it.
-double largest_albedo_difference(const BrdfFunction& table, const BrdfFunction& model, double first,
-                                 double last) {
+double largest_albedo_difference(const BrdfFunction& table, const BrdfFunction& model, double first, double last) {
   constexpr int steps = 32, rounds = 3;
   double largest = -1;
   for (int round = 0; round < rounds && first < last; ++round) {
     const double step = (last - first) / steps;
     std::vector<double> found(steps + 1);
-    parallel_for(found.size(), [&](size_t i) {
-      found[i] = albedo_difference(table, model, first + static_cast<double>(i) * step);
-    });
+    parallel_for(found.size(),
+                 [&](size_t i) { found[i] = albedo_difference(table, model, first + static_cast<double>(i) * step); });
     const auto best = std::max_element(found.begin(), found.end());
     largest = std::max(largest, *best);
     const double at = first + static_cast<double>(best - found.begin()) * step;
@@ -94,15 +92,13 @@ double largest_albedo_difference(const BrdfFunction& table, const BrdfFunction& 
 }
 
 // The sphere is seen from +z; a pixel's normal is its place on the sphere.
-void sphere(const BrdfFunction& table, const BrdfFunction& model, double cutoff,
-            FitErrorReport& report) {
+void sphere(const BrdfFunction& table, const BrdfFunction& model, double cutoff, FitErrorReport& report) {
   constexpr int size = 64;
   const double lowest = std::cos(cutoff);
   double sum[2] = {0, 0};
   int count[2] = {0, 0};
   for (double angle : {10.0, 50.0, 90.0}) {
-    const glm::dvec3 light(std::sin(angle * pi<double> / 180), 0,
-                           std::cos(angle * pi<double> / 180));
+    const glm::dvec3 light(std::sin(angle * pi<double> / 180), 0, std::cos(angle * pi<double> / 180));
     const glm::dvec3 view(0, 0, 1);
     for (int y = 0; y < size; ++y) {
       for (int x = 0; x < size; ++x) {
@@ -113,8 +109,7 @@ void sphere(const BrdfFunction& table, const BrdfFunction& model, double cutoff,
         const double cos_light = glm::dot(n, light);
         if (!(cos_light > 0)) continue;
         // Any frame about n: both BRDFs are isotropic.
-        const glm::dvec3 t = glm::normalize(glm::cross(glm::dvec3(0.3, 1, 0.2), n)),
-                         b = glm::cross(n, t);
+        const glm::dvec3 t = glm::normalize(glm::cross(glm::dvec3(0.3, 1, 0.2), n)), b = glm::cross(n, t);
         const auto local = [&](const glm::dvec3& w) {
           return glm::vec3(glm::dvec3(glm::dot(w, t), glm::dot(w, b), glm::dot(w, n)));
         };
@@ -139,9 +134,7 @@ void sphere(const BrdfFunction& table, const BrdfFunction& model, double cutoff,
 
 FitErrorReport fit_errors(const BrdfFunction& table, const BrdfFunction& model, double cutoff) {
   constexpr int rows = 90;
-  const auto angle = [](size_t i) {
-    return (static_cast<double>(i) + 0.5) / rows * pi<double> / 2;
-  };
+  const auto angle = [](size_t i) { return (static_cast<double>(i) + 0.5) / rows * pi<double> / 2; };
   std::vector<Row> results(rows);
   parallel_for(rows, [&](size_t i) { results[i] = integrate_row(table, model, angle(i), cutoff); });
   FitErrorReport report;

@@ -1,9 +1,9 @@
 #pragma once
 
+#include <limits>
+
 #include <gonio/fitting/fit/brdf_function.h>
 #include <gonio/fitting/fit/fit.h>
-
-#include <limits>
 
 namespace gonio {
 
@@ -41,7 +41,6 @@ inline constexpr double last_albedo_angle = 89.9 * pi<double> / 180;
 
 /// @param table NaN where it was not measured, as measured_part() is
 /// @param cutoff radians from the normal
-FitErrorReport fit_errors(const BrdfFunction& table, const BrdfFunction& model,
-                          double cutoff = default_grazing_cutoff);
+FitErrorReport fit_errors(const BrdfFunction& table, const BrdfFunction& model, double cutoff = default_grazing_cutoff);
 
 }  // namespace gonio

@@ -1,16 +1,17 @@
-#include <ceres/ceres.h>
-#include <Eigen/Core>
-#include <gonio/mapping/base/parallel.h>
-#include <gonio/fitting/fit/fit.h>
-#include <gonio/fitting/fit/linear_start.h>
-#include <gonio/fitting/fit/residual.h>
-#include <gonio/mapping/base/error.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <random>
+
+#include <Eigen/Core>
+#include <ceres/ceres.h>
+
+#include <gonio/fitting/fit/fit.h>
+#include <gonio/fitting/fit/linear_start.h>
+#include <gonio/fitting/fit/residual.h>
+#include <gonio/mapping/base/error.h>
+#include <gonio/mapping/base/parallel.h>
 
 namespace gonio {
 namespace {
@@ -20,14 +21,11 @@ using detail::ParameterLayout;
 using detail::SampleResidual;
 
 void check(const FitOptions& o) {
-  const auto require = [](bool good, const std::string& field, double found,
-                          const std::string& expected) {
-    if (!good)
-      throw Error("fit option " + field + " is " + std::to_string(found) + "; expected " +
-                  expected);
+  const auto require = [](bool good, const std::string& field, double found, const std::string& expected) {
+    if (!good) throw Error("fit option " + field + " is " + std::to_string(found) + "; expected " + expected);
   };
-  require(o.grazing_cutoff > 0 && o.grazing_cutoff <= pi<double> / 2, "grazing_cutoff",
-          o.grazing_cutoff, "radians in (0, pi/2]");
+  require(o.grazing_cutoff > 0 && o.grazing_cutoff <= pi<double> / 2, "grazing_cutoff", o.grazing_cutoff,
+          "radians in (0, pi/2]");
   require(o.robust_width >= 0, "robust_width", o.robust_width, "0 or more");
   require(o.starts >= 1, "starts", o.starts, "1 or more");
   require(o.max_iterations >= 1, "max_iterations", o.max_iterations, "1 or more");
@@ -79,8 +77,7 @@ class Fitter {
     Attempt base;
     base.model = form;
     for (Lobe& lobe : base.model.lobes) lobe = Lobe::initial(lobe.kind, lobe.fresnel);
-    if (previous)
-      std::copy(previous->lobes.begin(), previous->lobes.end(), base.model.lobes.begin());
+    if (previous) std::copy(previous->lobes.begin(), previous->lobes.end(), base.model.lobes.begin());
     if (form.lobes.back().specular()) {
       const std::vector<Parameter>& shape = lobe_info(form.lobes.back().kind).shape;
       const int widths = 10;
@@ -91,8 +88,7 @@ class Fitter {
           const double low = 2 * shape[0].min, high = shape[0].max / 2;
           lobe.shape[0] = glm::dvec3(low * std::pow(high / low, i / (widths - 1.0)));
           if (j > 0) {
-            lobe.shape[1] =
-                glm::dvec3(std::sqrt(shape[1].initial * (j == 1 ? shape[1].min : shape[1].max)));
+            lobe.shape[1] = glm::dvec3(std::sqrt(shape[1].initial * (j == 1 ? shape[1].min : shape[1].max)));
           }
           candidates.push_back(attempt);
         }
@@ -115,9 +111,8 @@ class Fitter {
       detail::solve_colors(samples_, options_.compression, candidates[i].model);
       candidates[i].initial_cost = cost(layout, candidates[i].model);
     });
-    std::stable_sort(candidates.begin(), candidates.end(), [](const Attempt& a, const Attempt& b) {
-      return a.initial_cost < b.initial_cost;
-    });
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const Attempt& a, const Attempt& b) { return a.initial_cost < b.initial_cost; });
     if (static_cast<int>(candidates.size()) > options_.starts) candidates.resize(options_.starts);
     return candidates;
   }
@@ -126,9 +121,8 @@ class Fitter {
     const std::vector<Parameter>& shape = lobe_info(lobe.kind).shape;
     for (size_t i = 0; i < shape.size(); ++i) {
       const double t = random();
-      lobe.shape[i] =
-          glm::dvec3(shape[i].logarithmic ? shape[i].min * std::pow(shape[i].max / shape[i].min, t)
-                                          : shape[i].min + t * (shape[i].max - shape[i].min));
+      lobe.shape[i] = glm::dvec3(shape[i].logarithmic ? shape[i].min * std::pow(shape[i].max / shape[i].min, t)
+                                                      : shape[i].min + t * (shape[i].max - shape[i].min));
     }
   }
 
@@ -138,12 +132,10 @@ class Fitter {
     double sum = 0;
     for (const FitSample& sample : samples_) {
       Eigen::Vector3d residual;
-      SampleResidual(sample, layout, options_.compression)
-          .Evaluate(parameters, residual.data(), nullptr);
+      SampleResidual(sample, layout, options_.compression).Evaluate(parameters, residual.data(), nullptr);
       const double square = residual.squaredNorm();
       const double width = options_.robust_width * sample.weight;
-      sum += width > 0 && square > width * width ? 2 * width * std::sqrt(square) - width * width
-                                                 : square;
+      sum += width > 0 && square > width * width ? 2 * width * std::sqrt(square) - width * width : square;
     }
     return sum / 2;
   }
@@ -161,8 +153,7 @@ class Fitter {
         losses.push_back(std::make_unique<ceres::HuberLoss>(options_.robust_width * sample.weight));
         loss = losses.back().get();
       }
-      problem.AddResidualBlock(new SampleResidual(sample, layout, options_.compression), loss,
-                               x.data());
+      problem.AddResidualBlock(new SampleResidual(sample, layout, options_.compression), loss, x.data());
     }
     for (int k = 0; k < layout.size(); ++k) {
       problem.SetParameterLowerBound(x.data(), k, layout.lower(layout.entries()[k]));
@@ -181,19 +172,17 @@ class Fitter {
     layout.unpack(x.data(), attempt.model);
     attempt.cost = summary.final_cost;
     attempt.iterations = static_cast<int>(summary.iterations.size());
-    attempt.termination = summary.termination_type == ceres::CONVERGENCE
-                              ? Termination::converged
-                              : Termination::iteration_limit;
+    attempt.termination =
+        summary.termination_type == ceres::CONVERGENCE ? Termination::converged : Termination::iteration_limit;
   }
 
   // Lobes of one kind have no order of their own: widest first, so that starts can be compared.
   static void sort_lobes(LobeModel& model) {
-    const auto first = std::find_if(model.lobes.begin(), model.lobes.end(),
-                                    [](const Lobe& lobe) { return lobe.specular(); });
+    const auto first =
+        std::find_if(model.lobes.begin(), model.lobes.end(), [](const Lobe& lobe) { return lobe.specular(); });
     if (first == model.lobes.end()) return;
-    if (std::any_of(first, model.lobes.end(), [&](const Lobe& lobe) {
-          return lobe.kind != first->kind || lobe.fresnel != first->fresnel;
-        })) {
+    if (std::any_of(first, model.lobes.end(),
+                    [&](const Lobe& lobe) { return lobe.kind != first->kind || lobe.fresnel != first->fresnel; })) {
       return;
     }
     const bool exponent = std::string(lobe_info(first->kind).shape[0].name) == "exponent";
@@ -203,9 +192,8 @@ class Fitter {
   }
 
   Fit summarise(const ParameterLayout& layout, std::vector<Attempt>& attempts) const {
-    const Attempt& best =
-        *std::min_element(attempts.begin(), attempts.end(),
-                          [](const Attempt& a, const Attempt& b) { return a.cost < b.cost; });
+    const Attempt& best = *std::min_element(attempts.begin(), attempts.end(),
+                                            [](const Attempt& a, const Attempt& b) { return a.cost < b.cost; });
     if (!std::isfinite(best.cost)) throw Error("fit: no start led to a usable solution");
     Fit fit;
     fit.model = best.model;
@@ -232,8 +220,8 @@ class Fitter {
     for (int k = 0; k < layout.size(); ++k) {
       const ParameterLayout::Entry& e = layout.entries()[k];
       const auto plain = [&](double x) { return e.parameter->logarithmic ? std::exp(x) : x; };
-      std::string name = std::to_string(e.lobe) + "." + lobe_info(fit.model.lobes[e.lobe].kind).id +
-                         "." + e.parameter->name;
+      std::string name =
+          std::to_string(e.lobe) + "." + lobe_info(fit.model.lobes[e.lobe].kind).id + "." + e.parameter->name;
       if (e.channel >= 0) name += std::string(".") + "rgb"[e.channel];
       fit.summary.parameters.push_back({name, plain(values[k]), plain(low[k]), plain(high[k])});
     }
@@ -259,8 +247,7 @@ const char* to_string(Termination termination) noexcept {
   return "failed";
 }
 
-std::vector<Fit> fit_stages(const BrdfFunction& f, const LobeModel& form,
-                            const FitOptions& options) {
+std::vector<Fit> fit_stages(const BrdfFunction& f, const LobeModel& form, const FitOptions& options) {
   check(options);
   if (form.lobes.empty()) throw Error("fit: the model has no lobe");
   std::vector<FitSample> samples = detail::fit_samples(f, options);
@@ -269,10 +256,8 @@ std::vector<Fit> fit_stages(const BrdfFunction& f, const LobeModel& form,
                 std::to_string(std::lround(options.grazing_cutoff * 180 / pi<double>)) +
                 " degrees that was measured, expected some");
   }
-  if (std::none_of(samples.begin(), samples.end(),
-                   [](const FitSample& s) { return s.value != glm::dvec3(0); })) {
-    throw Error("fit: the table is 0 or not finite at all " + std::to_string(samples.size()) +
-                " samples");
+  if (std::none_of(samples.begin(), samples.end(), [](const FitSample& s) { return s.value != glm::dvec3(0); })) {
+    throw Error("fit: the table is 0 or not finite at all " + std::to_string(samples.size()) + " samples");
   }
   Fitter fitter(std::move(samples), options);
 

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <gonio/fitting/fit/brdf_function.h>
-#include <gonio/fitting/model/model.h>
-
 #include <cstdint>
 #include <string>
 #include <vector>
+
+#include <gonio/fitting/fit/brdf_function.h>
+#include <gonio/fitting/model/model.h>
 
 namespace gonio {
 
@@ -41,7 +41,7 @@ struct FitOptions {
   /// to sample.
   bool separate_channels = false;
 
-  int starts = 4;  ///< local optimisations per number of lobes, besides the one from one lobe less
+  int starts = 4;           ///< local optimisations per number of lobes, besides the one from one lobe less
   std::uint32_t seed = 1;   ///< of the random starts; the same seed gives the same fit
   int max_iterations = 80;  ///< of each local optimisation; most need 10 to 40
 
@@ -58,17 +58,15 @@ const char* to_string(Termination termination) noexcept;
 
 /// How much one parameter differs between the starts that ended within 1 % of the best cost.
 struct ParameterSpread {
-  std::string
-      name;  ///< lobe number, lobe, parameter and channel: "1.ggx.alpha", "0.lambert.albedo.r"
+  std::string name;  ///< lobe number, lobe, parameter and channel: "1.ggx.alpha", "0.lambert.albedo.r"
   double value, min, max;
 };
 
 struct FitSummary {
   Termination termination = Termination::failed;
-  int iterations = 0;       ///< of the best start
-  double initial_cost = 0;  ///< of the best start
-  double cost =
-      0;  ///< half the weighted mean square of the compressed residuals (robust: its loss)
+  int iterations = 0;         ///< of the best start
+  double initial_cost = 0;    ///< of the best start
+  double cost = 0;            ///< half the weighted mean square of the compressed residuals (robust: its loss)
   std::vector<double> costs;  ///< of every start, in their order
   int agreeing_starts = 0;    ///< how many ended within 1 % of the best cost
   std::vector<ParameterSpread> parameters;
@@ -91,8 +89,7 @@ struct Fit {
 /// prints. Deterministic.
 /// @throws Error if `form` has no lobe, an option is out of its range, or f is 0 or not finite
 /// at every pair of directions that is looked at.
-std::vector<Fit> fit_stages(const BrdfFunction& f, const LobeModel& form,
-                            const FitOptions& options = {});
+std::vector<Fit> fit_stages(const BrdfFunction& f, const LobeModel& form, const FitOptions& options = {});
 
 /// The last of fit_stages().
 Fit fit(const BrdfFunction& f, const LobeModel& form, const FitOptions& options = {});

@@ -1,9 +1,9 @@
 #pragma once
 
+#include <string>
+
 #include <gonio/fitting/fit/errors.h>
 #include <gonio/fitting/fit/fit.h>
-
-#include <string>
 
 namespace gonio {
 

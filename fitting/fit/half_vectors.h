@@ -1,10 +1,11 @@
 #pragma once
 
-#include <gonio/fitting/lobes/angles.h>
-
 #include <cmath>
+
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
+
+#include <gonio/fitting/lobes/angles.h>
 
 namespace gonio::detail {
 
@@ -20,8 +21,7 @@ void for_half_vectors(const glm::dvec3& wi, double least_cos_d, const F& f) {
     const double d_theta = 3 * s * s * pi<double> / 2 / n_theta;
     for (int j = 0; j < n_phi; ++j) {
       const double phi = pi<double> * (j + 0.5) / n_phi;
-      const glm::dvec3 h(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
-                         std::cos(theta));
+      const glm::dvec3 h(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
       const double cos_d = glm::dot(wi, h);
       const glm::dvec3 wo = reflect_about(wi, h);
       if (!(cos_d > least_cos_d && wo.z > 0)) continue;

@@ -1,7 +1,7 @@
-#include <gonio/fitting/fit/linear_start.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include <gonio/fitting/fit/linear_start.h>
 
 namespace gonio::detail {
 
@@ -23,8 +23,8 @@ Eigen::VectorXd non_negative_least_squares(const Eigen::MatrixXd& a, const Eigen
 namespace {
 
 // The values of the unit lobes: columns of the linear problem, a row per sample.
-Eigen::MatrixXd unit_columns(const std::vector<FitSample>& samples, const LobeModel& model,
-                             int channel, Eigen::Index columns) {
+Eigen::MatrixXd unit_columns(const std::vector<FitSample>& samples, const LobeModel& model, int channel,
+                             Eigen::Index columns) {
   Eigen::MatrixXd values(samples.size(), columns);
   for (size_t s = 0; s < samples.size(); ++s) {
     const Angles<double>& angles = samples[s].angles;
@@ -32,8 +32,7 @@ Eigen::MatrixXd unit_columns(const std::vector<FitSample>& samples, const LobeMo
     for (const Lobe& lobe : model.lobes) {
       const double shape[max_shape] = {lobe.shape[0][channel], lobe.shape[1][channel]};
       const double value =
-          angles.cos_o *
-          visit_lobe(lobe.kind, shape, [&](const auto& functor) { return functor.eval(angles); });
+          angles.cos_o * visit_lobe(lobe.kind, shape, [&](const auto& functor) { return functor.eval(angles); });
       if (lobe.specular()) {
         values(s, at++) = value * schlick(1.0, 0.0, angles.cos_d);
         values(s, at++) = value * schlick(0.0, 1.0, angles.cos_d);
@@ -68,12 +67,11 @@ Eigen::VectorXd solve_channel(const std::vector<FitSample>& samples, Compression
 
 }  // namespace
 
-void solve_colors(const std::vector<FitSample>& samples, Compression compression,
-                  LobeModel& model) {
+void solve_colors(const std::vector<FitSample>& samples, Compression compression, LobeModel& model) {
   Eigen::Index columns = 0;
   for (const Lobe& lobe : model.lobes) columns += lobe.specular() ? 2 : 1;
-  const bool separate = std::any_of(model.lobes.begin(), model.lobes.end(),
-                                    [](const Lobe& lobe) { return lobe.separate(); });
+  const bool separate =
+      std::any_of(model.lobes.begin(), model.lobes.end(), [](const Lobe& lobe) { return lobe.separate(); });
   Eigen::MatrixXd values;
   for (int c = 0; c < 3; ++c) {
     if (c == 0 || separate) values = unit_columns(samples, model, c, columns);

@@ -1,9 +1,10 @@
 #pragma once
 
-#include <Eigen/Core>
-#include <gonio/fitting/fit/residual.h>
-
 #include <vector>
+
+#include <Eigen/Core>
+
+#include <gonio/fitting/fit/residual.h>
 
 namespace gonio::detail {
 

@@ -1,8 +1,9 @@
+#include <cmath>
+
 #include <Eigen/Core>
+
 #include <gonio/fitting/fit/residual.h>
 #include <gonio/mapping/base/error.h>
-
-#include <cmath>
 
 namespace gonio::detail {
 
@@ -38,20 +39,17 @@ std::vector<FitSample> fit_samples(const BrdfFunction& f, const FitOptions& opti
       const double theta_d = (d + 0.5) / options.theta_d * pi<double> / 2;
       for (int p = 0; p < options.phi_d; ++p) {
         const double phi_d = (p + 0.5) / options.phi_d * pi<double>;
-        const glm::dvec3 diff(std::sin(theta_d) * std::cos(phi_d),
-                              std::sin(theta_d) * std::sin(phi_d), std::cos(theta_d));
-        const glm::dvec3 wi(cos_h * diff.x + sin_h * diff.z, diff.y,
-                            cos_h * diff.z - sin_h * diff.x);
+        const glm::dvec3 diff(std::sin(theta_d) * std::cos(phi_d), std::sin(theta_d) * std::sin(phi_d),
+                              std::cos(theta_d));
+        const glm::dvec3 wi(cos_h * diff.x + sin_h * diff.z, diff.y, cos_h * diff.z - sin_h * diff.x);
         const glm::dvec3 wo = reflect_about(wi, glm::dvec3(sin_h, 0, cos_h));
         if (!(wi.z >= lowest && wo.z >= lowest)) continue;
         const glm::dvec3 value = glm::dvec3(f(glm::vec3(wi), glm::vec3(wo))) * wo.z;
-        if (!(value.r >= 0 && value.g >= 0 && value.b >= 0) ||
-            !std::isfinite(value.r + value.g + value.b)) {
+        if (!(value.r >= 0 && value.g >= 0 && value.b >= 0) || !std::isfinite(value.r + value.g + value.b)) {
           continue;
         }
         // dwi dwo = 4 cos_d dwh dwd; d(theta_h) = pi s ds.
-        const double area =
-            options.solid_angle_weights ? std::cos(theta_d) * std::sin(theta_d) * sin_h * s : 1.0;
+        const double area = options.solid_angle_weights ? std::cos(theta_d) * std::sin(theta_d) * sin_h * s : 1.0;
         samples.push_back({Angles<double>(wi, wo), value, area});
         total += area;
       }
@@ -82,8 +80,7 @@ std::vector<double> ParameterLayout::pack(const LobeModel& model) const {
   x.reserve(entries_.size());
   for (const Entry& e : entries_) {
     const Lobe& lobe = model.lobes[e.lobe];
-    const double value =
-        (e.color ? lobe.color[e.index] : lobe.shape[e.index])[std::max(e.channel, 0)];
+    const double value = (e.color ? lobe.color[e.index] : lobe.shape[e.index])[std::max(e.channel, 0)];
     const double kept = std::fmin(std::fmax(value, e.parameter->min), e.parameter->max);
     x.push_back(e.parameter->logarithmic ? std::log(kept) : kept);
   }
@@ -115,22 +112,20 @@ double ParameterLayout::upper(const Entry& entry) const {
   return entry.parameter->logarithmic ? std::log(entry.parameter->max) : entry.parameter->max;
 }
 
-SampleResidual::SampleResidual(const FitSample& sample, const ParameterLayout& layout,
-                               Compression compression)
+SampleResidual::SampleResidual(const FitSample& sample, const ParameterLayout& layout, Compression compression)
     : sample_(sample), layout_(layout), compression_(compression) {
   set_num_residuals(3);
   mutable_parameter_block_sizes()->push_back(layout.size());
   for (int c = 0; c < 3; ++c) target_[c] = compress(compression, sample.value[c]);
 }
 
-bool SampleResidual::Evaluate(double const* const* parameters, double* residuals,
-                              double** jacobians) const {
+bool SampleResidual::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
   using Jet = ceres::Jet<double, 2>;  // two shape parameters, or the two of a Fresnel term
   static_assert(max_shape == 2);
   const double* x = parameters[0];
   const bool derive = jacobians && jacobians[0];
-  Eigen::Map<Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>> jacobian(
-      derive ? jacobians[0] : nullptr, 3, layout_.size());
+  Eigen::Map<Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>> jacobian(derive ? jacobians[0] : nullptr, 3,
+                                                                                 layout_.size());
   if (derive) jacobian.setZero();
   const std::vector<ParameterLayout::Entry>& entries = layout_.entries();
 
@@ -152,12 +147,10 @@ bool SampleResidual::Evaluate(double const* const* parameters, double* residuals
           shape[i].v[i] = scale;
         }
         if (derive && shapes > 0) {
-          value = visit_lobe(lobe.kind, shape,
-                             [&](const auto& functor) { return functor.eval(sample_.angles); });
+          value = visit_lobe(lobe.kind, shape, [&](const auto& functor) { return functor.eval(sample_.angles); });
         } else {
           const double plain[max_shape] = {shape[0].a, shape[1].a};
-          value = Jet(visit_lobe(
-              lobe.kind, plain, [&](const auto& functor) { return functor.eval(sample_.angles); }));
+          value = Jet(visit_lobe(lobe.kind, plain, [&](const auto& functor) { return functor.eval(sample_.angles); }));
         }
       }
       Jet factor;
@@ -171,9 +164,8 @@ bool SampleResidual::Evaluate(double const* const* parameters, double* residuals
           color[i].a = entries[k].parameter->logarithmic ? scale : x[k];
           color[i].v[i] = scale;
         }
-        factor = lobe.fresnel == Fresnel::schlick
-                     ? schlick(color[0], color[1], sample_.angles.cos_d)
-                     : conductor(color[0], color[1], sample_.angles.cos_d);
+        factor = lobe.fresnel == Fresnel::schlick ? schlick(color[0], color[1], sample_.angles.cos_d)
+                                                  : conductor(color[0], color[1], sample_.angles.cos_d);
       }
       sum[c] += factor.a * value.a;
       if (!derive) continue;
@@ -187,8 +179,7 @@ bool SampleResidual::Evaluate(double const* const* parameters, double* residuals
   for (int c = 0; c < 3; ++c) {
     const double g = sum[c] * sample_.angles.cos_o;
     double slope = 0;
-    residuals[c] =
-        sample_.weight * (compress(compression_, g, derive ? &slope : nullptr) - target_[c]);
+    residuals[c] = sample_.weight * (compress(compression_, g, derive ? &slope : nullptr) - target_[c]);
     if (derive) jacobian.row(c) *= slope * sample_.weight * sample_.angles.cos_o;
   }
   return true;

@@ -1,9 +1,10 @@
 #pragma once
 
-#include <ceres/ceres.h>
-#include <gonio/fitting/fit/fit.h>
-
 #include <vector>
+
+#include <ceres/ceres.h>
+
+#include <gonio/fitting/fit/fit.h>
 
 /// The pieces of a fit, apart so that tests can check them; not installed.
 namespace gonio::detail {
@@ -56,8 +57,7 @@ class ParameterLayout {
 class SampleResidual : public ceres::CostFunction {
  public:
   SampleResidual(const FitSample& sample, const ParameterLayout& layout, Compression compression);
-  bool Evaluate(double const* const* parameters, double* residuals,
-                double** jacobians) const override;
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
  private:
   const FitSample& sample_;

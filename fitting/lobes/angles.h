@@ -1,10 +1,11 @@
 #pragma once
 
-#include <gonio/mapping/charts/concentric.h>
-
 #include <cmath>
+
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
+
+#include <gonio/mapping/charts/concentric.h>
 
 namespace gonio {
 

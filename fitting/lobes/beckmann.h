@@ -1,8 +1,8 @@
 #pragma once
 
-#include <gonio/fitting/lobes/angles.h>
-
 #include <optional>
+
+#include <gonio/fitting/lobes/angles.h>
 
 namespace gonio {
 
@@ -17,8 +17,7 @@ struct Beckmann {
 
   template <class S>
   T eval(const Angles<S>& a) const {
-    return normal_density(a) /
-           (T(4 * a.cos_i * a.cos_o) * (T(1) + lambda(a.cos_i) + lambda(a.cos_o)));
+    return normal_density(a) / (T(4 * a.cos_i * a.cos_o) * (T(1) + lambda(a.cos_i) + lambda(a.cos_o)));
   }
 
   /// Half vectors by D cos_h: Walter et al. 2007, eq. 28. Empty if wo is not above the horizon.

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <gonio/fitting/lobes/angles.h>
-
 #include <cmath>
 #include <optional>
+
+#include <gonio/fitting/lobes/angles.h>
 
 /// Diffuse lobes with albedo 1. A lobe is a small value with the parameters as members; eval()
 /// takes its parameters in any scalar T (float, double, ceres::Jet) and the angles in S. All of
@@ -30,9 +30,7 @@ struct Lambert {
     return T(1 / pi<S>);
   }
 
-  std::optional<glm::vec<3, T>> sample(const glm::vec<3, T>&, T u, T v) const {
-    return cosine_sample(u, v);
-  }
+  std::optional<glm::vec<3, T>> sample(const glm::vec<3, T>&, T u, T v) const { return cosine_sample(u, v); }
   template <class S>
   T pdf(const Angles<S>& a) const {
     return T(cosine_pdf(a.cos_o));
@@ -57,9 +55,7 @@ struct OrenNayar {
     return (weight_a + weight_b * T(back)) * T(1 / pi<S>);
   }
 
-  std::optional<glm::vec<3, T>> sample(const glm::vec<3, T>&, T u, T v) const {
-    return cosine_sample(u, v);
-  }
+  std::optional<glm::vec<3, T>> sample(const glm::vec<3, T>&, T u, T v) const { return cosine_sample(u, v); }
   template <class S>
   T pdf(const Angles<S>& a) const {
     return T(cosine_pdf(a.cos_o));
@@ -77,13 +73,10 @@ struct Burley {
   template <class S>
   T eval(const Angles<S>& a) const {
     const T grazing = T(2 * a.cos_d * a.cos_d) * roughness - T(0.5);  // F_D90 - 1
-    return (T(1) + grazing * T(fifth(1 - a.cos_i))) * (T(1) + grazing * T(fifth(1 - a.cos_o))) *
-           T(1 / pi<S>);
+    return (T(1) + grazing * T(fifth(1 - a.cos_i))) * (T(1) + grazing * T(fifth(1 - a.cos_o))) * T(1 / pi<S>);
   }
 
-  std::optional<glm::vec<3, T>> sample(const glm::vec<3, T>&, T u, T v) const {
-    return cosine_sample(u, v);
-  }
+  std::optional<glm::vec<3, T>> sample(const glm::vec<3, T>&, T u, T v) const { return cosine_sample(u, v); }
   template <class S>
   T pdf(const Angles<S>& a) const {
     return T(cosine_pdf(a.cos_o));

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <gonio/fitting/lobes/angles.h>
-
 #include <optional>
+
+#include <gonio/fitting/lobes/angles.h>
 
 namespace gonio {
 
@@ -19,8 +19,7 @@ struct Ggx {
   T eval(const Angles<S>& a) const {
     const T a2 = alpha * alpha;
     // G2 / (4 cos_i cos_o), multiplied out so that nothing is divided by a vanishing cosine.
-    return normal_density(a) * T(0.5) /
-           (T(a.cos_o) * root(a2, a.cos_i) + T(a.cos_i) * root(a2, a.cos_o));
+    return normal_density(a) * T(0.5) / (T(a.cos_o) * root(a2, a.cos_i) + T(a.cos_i) * root(a2, a.cos_o));
   }
 
   /// Visible normals: Heitz 2018, "Sampling the GGX distribution of visible normals", section 3.
@@ -29,8 +28,7 @@ struct Ggx {
     using Vec = glm::vec<3, T>;
     const Vec stretched = glm::normalize(Vec(alpha * wi.x, alpha * wi.y, wi.z));
     const T length2 = stretched.x * stretched.x + stretched.y * stretched.y;
-    const Vec t1 = length2 > T(0) ? Vec(-stretched.y, stretched.x, T(0)) / std::sqrt(length2)
-                                  : Vec(T(1), T(0), T(0));
+    const Vec t1 = length2 > T(0) ? Vec(-stretched.y, stretched.x, T(0)) / std::sqrt(length2) : Vec(T(1), T(0), T(0));
     const Vec t2 = glm::cross(stretched, t1);
     const Vec p = visible_point(stretched.z, u, v);
     const Vec n = p.x * t1 + p.y * t2 + p.z * stretched;

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <gonio/fitting/lobes/angles.h>
-
 #include <cmath>
 #include <optional>
+
+#include <gonio/fitting/lobes/angles.h>
 
 namespace gonio {
 
@@ -37,8 +37,7 @@ struct Lafortune {
     const Vec local = polar(std::exp(log_cos), -std::expm1(T(2) * log_cos), v);
     // A frame about the axis, which is on the upper side (Duff et al. 2017, listing 3, sign +).
     const T a = T(-1) / (T(1) + axis.z), b = axis.x * axis.y * a;
-    const Vec t1(T(1) + axis.x * axis.x * a, b, -axis.x),
-        t2(b, T(1) + axis.y * axis.y * a, -axis.y);
+    const Vec t1(T(1) + axis.x * axis.x * a, b, -axis.x), t2(b, T(1) + axis.y * axis.y * a, -axis.y);
     const Vec wo = local.x * t1 + local.y * t2 + local.z * axis;
     if (!(wo.z > T(0))) return std::nullopt;
     return wo;

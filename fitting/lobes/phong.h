@@ -1,9 +1,9 @@
 #pragma once
 
-#include <gonio/fitting/lobes/angles.h>
-
 #include <cmath>
 #include <optional>
+
+#include <gonio/fitting/lobes/angles.h>
 
 namespace gonio {
 

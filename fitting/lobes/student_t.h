@@ -1,8 +1,8 @@
 #pragma once
 
-#include <gonio/fitting/lobes/angles.h>
-
 #include <optional>
+
+#include <gonio/fitting/lobes/angles.h>
 
 namespace gonio {
 
@@ -21,8 +21,7 @@ struct StudentT {
 
   template <class S>
   T eval(const Angles<S>& a) const {
-    return normal_density(a) /
-           (T(4 * a.cos_i * a.cos_o) * (T(1) + lambda(a.cos_i) + lambda(a.cos_o)));
+    return normal_density(a) / (T(4 * a.cos_i * a.cos_o) * (T(1) + lambda(a.cos_i) + lambda(a.cos_o)));
   }
 
   /// Half vectors by D cos_h (inverting the integral of eq. 10). Empty if wo is not above the
@@ -50,8 +49,7 @@ struct StudentT {
     using std::log;
     const S cos2 = a.cos_h * a.cos_h;
     const T b = (gamma - T(1)) * alpha * alpha;
-    return exp(-gamma * log(T(1) + T(a.sin2_h / cos2) / b)) /
-           (T(pi<S> * cos2 * cos2) * alpha * alpha);
+    return exp(-gamma * log(T(1) + T(a.sin2_h / cos2) / b)) / (T(pi<S> * cos2 * cos2) * alpha * alpha);
   }
 
   // The slope along one axis has density C (1 + x^2/b)^-q, b = (gamma-1) alpha^2, q = gamma - 1/2.
@@ -79,15 +77,13 @@ struct StudentT {
     using std::cos;
     using std::exp;
     using std::log;
-    constexpr double node[4] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
-                                0.9602898564975363};
-    constexpr double weight[4] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
-                                  0.1012285362903763};
+    constexpr double node[4] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
+    constexpr double weight[4] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
     const T middle = T(0.5) * (from + to), half = T(0.5) * (to - from), p = T(2) * q - T(2);
     T sum(0);
     for (int i = 0; i < 4; ++i) {
-      sum += T(weight[i]) * (exp(p * log(cos(middle - T(node[i]) * half))) +
-                             exp(p * log(cos(middle + T(node[i]) * half))));
+      sum += T(weight[i]) *
+             (exp(p * log(cos(middle - T(node[i]) * half))) + exp(p * log(cos(middle + T(node[i]) * half))));
     }
     return sum * half;
   }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <utility>
+
 #include <gonio/fitting/lobes/beckmann.h>
 #include <gonio/fitting/lobes/diffuse.h>
 #include <gonio/fitting/lobes/ggx.h>
@@ -7,8 +9,6 @@
 #include <gonio/fitting/lobes/phong.h>
 #include <gonio/fitting/lobes/student_t.h>
 #include <gonio/fitting/lobes/ward.h>
-
-#include <utility>
 
 namespace gonio {
 

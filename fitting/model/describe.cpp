@@ -1,7 +1,3 @@
-#include <gonio/fitting/model/model.h>
-#include <gonio/mapping/base/did_you_mean.h>
-#include <gonio/mapping/base/error.h>
-
 #include <algorithm>
 #include <cctype>
 #include <charconv>
@@ -9,6 +5,10 @@
 #include <set>
 #include <sstream>
 #include <utility>
+
+#include <gonio/fitting/model/model.h>
+#include <gonio/mapping/base/did_you_mean.h>
+#include <gonio/mapping/base/error.h>
 
 namespace gonio {
 namespace {
@@ -40,8 +40,7 @@ std::vector<std::string_view> split_lobes(std::string_view text) {
   std::vector<std::string_view> parts;
   size_t begin = 0;
   for (size_t i = 0; i < text.size(); ++i) {
-    const bool exponent = i > 0 && (text[i - 1] == 'e' || text[i - 1] == 'E') &&
-                          i + 1 < text.size() &&
+    const bool exponent = i > 0 && (text[i - 1] == 'e' || text[i - 1] == 'E') && i + 1 < text.size() &&
                           std::isdigit(static_cast<unsigned char>(text[i + 1]));
     if (text[i] != '+' || exponent) continue;
     parts.push_back(text.substr(begin, i - begin));
@@ -64,8 +63,7 @@ double number(std::string_view text, std::string_view parameter) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) {
-    throw Error("model description: value " + in_quotes(text) + " of " + in_quotes(parameter) +
-                " is not a number");
+    throw Error("model description: value " + in_quotes(text) + " of " + in_quotes(parameter) + " is not a number");
   }
   return value;
 }
@@ -74,8 +72,8 @@ glm::dvec3 color_value(std::string_view text, std::string_view parameter) {
   const std::vector<std::string_view> parts = split(text, '/');
   if (parts.size() == 1) return glm::dvec3(number(parts[0], parameter));
   if (parts.size() != 3) {
-    throw Error("model description: " + in_quotes(parameter) + " has " +
-                std::to_string(parts.size()) + " values; expected one, or red/green/blue");
+    throw Error("model description: " + in_quotes(parameter) + " has " + std::to_string(parts.size()) +
+                " values; expected one, or red/green/blue");
   }
   return {number(parts[0], parameter), number(parts[1], parameter), number(parts[2], parameter)};
 }
@@ -131,9 +129,8 @@ void assign(Lobe& lobe, const std::string& name, std::string_view text) {
   for (int channel = 0; channel < 3; ++channel) {
     if (!(value[channel] >= slot.parameter->min && value[channel] <= slot.parameter->max)) {
       std::ostringstream message;
-      message << "model description: " << lobe_info(lobe.kind).id << " parameter '"
-              << slot.parameter->name << "' is " << value[channel] << "; expected "
-              << slot.parameter->min << " to " << slot.parameter->max;
+      message << "model description: " << lobe_info(lobe.kind).id << " parameter '" << slot.parameter->name << "' is "
+              << value[channel] << "; expected " << slot.parameter->min << " to " << slot.parameter->max;
       throw Error(message.str());
     }
   }
@@ -167,8 +164,7 @@ LobeModel parse_model(std::string_view text) {
       throw Error("model description: found " + in_quotes(setting.text) + "; expected name=value");
     }
     const std::string name = lower(setting.text.substr(0, equals));
-    Lobe* target =
-        find_parameter(model.lobes[setting.lobe], name) ? &model.lobes[setting.lobe] : nullptr;
+    Lobe* target = find_parameter(model.lobes[setting.lobe], name) ? &model.lobes[setting.lobe] : nullptr;
     int owners = 0;
     if (!target) {
       for (Lobe& lobe : model.lobes) {
@@ -178,17 +174,16 @@ LobeModel parse_model(std::string_view text) {
       }
     }
     if (!target) {
-      throw Error("model description: no lobe of " + in_quotes(text) + " has a parameter " +
-                  in_quotes(name) + "; expected " + one_of(parameter_names(model), name));
+      throw Error("model description: no lobe of " + in_quotes(text) + " has a parameter " + in_quotes(name) +
+                  "; expected " + one_of(parameter_names(model), name));
     }
     if (owners > 1) {
       throw Error("model description: " + std::to_string(owners) + " lobes of " + in_quotes(text) +
-                  " have a parameter " + in_quotes(name) +
-                  "; write it right after the lobe it belongs to");
+                  " have a parameter " + in_quotes(name) + "; write it right after the lobe it belongs to");
     }
     if (!given.insert({target, name}).second) {
-      throw Error("model description: found " + in_quotes(name) + " of " +
-                  lobe_info(target->kind).id + " twice; expected it once");
+      throw Error("model description: found " + in_quotes(name) + " of " + lobe_info(target->kind).id +
+                  " twice; expected it once");
     }
     assign(*target, name, setting.text.substr(equals + 1));
   }
@@ -219,8 +214,7 @@ std::string describe(const LobeModel& model) {
     const LobeInfo& info = lobe_info(lobe.kind);
     out += info.id;
     char separator = ':';
-    for (size_t i = 0; i < info.shape.size(); ++i)
-      write(info.shape[i].name, lobe.shape[i], separator);
+    for (size_t i = 0; i < info.shape.size(); ++i) write(info.shape[i].name, lobe.shape[i], separator);
     const std::vector<Parameter>& colors = color_parameters(lobe.kind, lobe.fresnel);
     for (size_t i = 0; i < colors.size(); ++i) write(colors[i].name, lobe.color[i], separator);
   }

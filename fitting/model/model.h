@@ -1,14 +1,15 @@
 #pragma once
 
-#include <gonio/fitting/lobes/fresnel.h>
-#include <gonio/fitting/lobes/visit.h>
-
 #include <array>
 #include <filesystem>
-#include <glm/vec3.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include <glm/vec3.hpp>
+
+#include <gonio/fitting/lobes/fresnel.h>
+#include <gonio/fitting/lobes/visit.h>
 
 namespace gonio {
 
@@ -117,8 +118,7 @@ glm::vec<3, S> LobeModel::eval(const glm::vec<3, S>& wi, const glm::vec<3, S>& w
     for (int channel = 0; channel < 3; ++channel) {
       if (channel == 0 || !shared) {
         const S shape[max_shape] = {S(lobe.shape[0][channel]), S(lobe.shape[1][channel])};
-        value =
-            visit_lobe(lobe.kind, shape, [&](const auto& functor) { return functor.eval(angles); });
+        value = visit_lobe(lobe.kind, shape, [&](const auto& functor) { return functor.eval(angles); });
       }
       const S first = S(lobe.color[0][channel]), second = S(lobe.color[1][channel]);
       const S factor = !specular                          ? first

@@ -1,11 +1,11 @@
-#include <gonio/mapping/base/bytes.h>
-#include <gonio/fitting/model/model_json.h>
-#include <gonio/fitting/model/parse_json.h>
-#include <gonio/mapping/base/did_you_mean.h>
-#include <gonio/mapping/base/error.h>
-
 #include <algorithm>
 #include <sstream>
+
+#include <gonio/fitting/model/model_json.h>
+#include <gonio/fitting/model/parse_json.h>
+#include <gonio/mapping/base/bytes.h>
+#include <gonio/mapping/base/did_you_mean.h>
+#include <gonio/mapping/base/error.h>
 
 namespace gonio {
 
@@ -48,8 +48,7 @@ ordered_json model_json(const LobeModel& model) {
     ordered_json entry;
     entry["lobe"] = info.id;
     entry["source"] = info.source;
-    if (lobe.specular())
-      entry["fresnel"] = lobe.fresnel == Fresnel::schlick ? "schlick" : "conductor";
+    if (lobe.specular()) entry["fresnel"] = lobe.fresnel == Fresnel::schlick ? "schlick" : "conductor";
     ordered_json parameters;
     for (size_t i = 0; i < info.shape.size(); ++i) {
       parameters[info.shape[i].name] = parameter_json(info.shape[i], lobe.shape[i]);
@@ -63,8 +62,7 @@ ordered_json model_json(const LobeModel& model) {
   }
   ordered_json snippets = ordered_json::object();
   if (const std::string pbrt = pbrt_snippet(model); !pbrt.empty()) snippets["pbrt-v4"] = pbrt;
-  if (const std::string mitsuba = mitsuba_snippet(model); !mitsuba.empty())
-    snippets["mitsuba3"] = mitsuba;
+  if (const std::string mitsuba = mitsuba_snippet(model); !mitsuba.empty()) snippets["mitsuba3"] = mitsuba;
   if (!snippets.empty()) j["snippets"] = snippets;
   return j;
 }
@@ -89,20 +87,18 @@ class Reader {
 
   std::string text(const json& object, const std::string& path, const char* name) const {
     const json& value = member(object, path, name);
-    if (!value.is_string())
-      fail(path + "." + name + " is " + value.type_name() + "; expected a string");
+    if (!value.is_string()) fail(path + "." + name + " is " + value.type_name() + "; expected a string");
     return value;
   }
 
-  glm::dvec3 parameter(const json& parameters, const std::string& path,
-                       const Parameter& parameter) const {
+  glm::dvec3 parameter(const json& parameters, const std::string& path, const Parameter& parameter) const {
     const std::string here = path + "." + parameter.name;
     const json& value = member(member(parameters, path, parameter.name), here, "value");
     glm::dvec3 result;
     if (value.is_number()) {
       result = glm::dvec3(value.get<double>());
-    } else if (value.is_array() && value.size() == 3 && value[0].is_number() &&
-               value[1].is_number() && value[2].is_number()) {
+    } else if (value.is_array() && value.size() == 3 && value[0].is_number() && value[1].is_number() &&
+               value[2].is_number()) {
       result = {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
     } else {
       fail(here + ".value is " + shown(value) + "; expected a number or [red, green, blue]");
@@ -110,8 +106,7 @@ class Reader {
     for (int c = 0; c < 3; ++c) {
       if (!(result[c] >= parameter.min && result[c] <= parameter.max)) {
         std::ostringstream message;
-        message << here << ".value is " << result[c] << "; expected " << parameter.min << " to "
-                << parameter.max;
+        message << here << ".value is " << result[c] << "; expected " << parameter.min << " to " << parameter.max;
         fail(message.str());
       }
     }
@@ -145,7 +140,8 @@ LobeModel model_from_json(std::string_view text, const std::string& where) {
       if (id == lobe_info(kind).id) lobe.kind = kind;
       known.push_back(lobe_info(kind).id);
     }
-    if (std::find(known.begin(), known.end(), id) == known.end()) reader.fail(path + ".lobe is '" + id + "'; expected " + one_of(known, id));
+    if (std::find(known.begin(), known.end(), id) == known.end())
+      reader.fail(path + ".lobe is '" + id + "'; expected " + one_of(known, id));
     if (lobe.specular()) {
       const std::string fresnel = reader.text(lobes[l], path, "fresnel");
       if (fresnel != "schlick" && fresnel != "conductor") {
@@ -167,8 +163,6 @@ LobeModel model_from_json(std::string_view text, const std::string& where) {
   return model;
 }
 
-LobeModel load_model(const std::filesystem::path& path) {
-  return model_from_json(read_bytes(path), path.string());
-}
+LobeModel load_model(const std::filesystem::path& path) { return model_from_json(read_bytes(path), path.string()); }
 
 }  // namespace gonio

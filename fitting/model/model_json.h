@@ -1,8 +1,8 @@
 #pragma once
 
-#include <gonio/fitting/model/model.h>
-
 #include <nlohmann/json.hpp>
+
+#include <gonio/fitting/model/model.h>
 
 /// Not installed: keeps nlohmann::json out of the public headers.
 namespace gonio::detail {

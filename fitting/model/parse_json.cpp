@@ -1,8 +1,8 @@
-#include <gonio/fitting/model/parse_json.h>
-#include <gonio/mapping/base/error.h>
-
 #include <set>
 #include <vector>
+
+#include <gonio/fitting/model/parse_json.h>
+#include <gonio/mapping/base/error.h>
 
 namespace gonio {
 namespace {
@@ -28,15 +28,21 @@ class Rules {
         next();
         open_.push_back({event == json::parse_event_t::array_start, 0, {}, {}});
         if (open_.size() > max_json_depth)
-          throw Error(where_ + ": found objects or arrays more than " + std::to_string(max_json_depth) + " deep, expected fewer inside each other");
+          throw Error(where_ + ": found objects or arrays more than " + std::to_string(max_json_depth) +
+                      " deep, expected fewer inside each other");
         break;
       case json::parse_event_t::object_end:
-      case json::parse_event_t::array_end: open_.pop_back(); break;
+      case json::parse_event_t::array_end:
+        open_.pop_back();
+        break;
       case json::parse_event_t::key:
         open_.back().key = parsed.get<std::string>();
-        if (!open_.back().keys.insert(open_.back().key).second) throw Error(where_ + ": " + shortened(path(), 200) + ": found twice, expected once");
+        if (!open_.back().keys.insert(open_.back().key).second)
+          throw Error(where_ + ": " + shortened(path(), 200) + ": found twice, expected once");
         break;
-      case json::parse_event_t::value: next(); break;
+      case json::parse_event_t::value:
+        next();
+        break;
     }
   }
 
@@ -54,7 +60,8 @@ class Rules {
 
   std::string path() const {
     std::string text;
-    for (const Open& open : open_) text += open.array ? "[" + std::to_string(open.count - 1) + "]" : (text.empty() ? "" : ".") + open.key;
+    for (const Open& open : open_)
+      text += open.array ? "[" + std::to_string(open.count - 1) + "]" : (text.empty() ? "" : ".") + open.key;
     return text;
   }
 
@@ -79,6 +86,8 @@ json parse_json(std::string_view text, const std::string& where) {
   }
 }
 
-std::string shown(const json& value) { return shortened(value.dump(-1, ' ', false, json::error_handler_t::replace), 40); }
+std::string shown(const json& value) {
+  return shortened(value.dump(-1, ' ', false, json::error_handler_t::replace), 40);
+}
 
 }  // namespace gonio

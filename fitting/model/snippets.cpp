@@ -1,8 +1,8 @@
-#include <gonio/fitting/model/model.h>
-
 #include <algorithm>
 #include <locale>
 #include <sstream>
+
+#include <gonio/fitting/model/model.h>
 
 namespace gonio {
 namespace {
@@ -30,12 +30,10 @@ std::vector<Part> parts(const LobeModel& model, const std::vector<LobeKind>& kin
   std::vector<Part> result;
   double total = 0;
   for (const Lobe& lobe : model.lobes) {
-    if (std::find(kinds.begin(), kinds.end(), lobe.kind) == kinds.end() || lobe.separate())
-      return {};
+    if (std::find(kinds.begin(), kinds.end(), lobe.kind) == kinds.end() || lobe.separate()) return {};
     glm::dvec3 reflectance = lobe.color[0];
     if (lobe.fresnel == Fresnel::conductor) {
-      for (int c = 0; c < 3; ++c)
-        reflectance[c] = conductor(lobe.color[0][c], lobe.color[1][c], 1.0);
+      for (int c = 0; c < 3; ++c) reflectance[c] = conductor(lobe.color[0][c], lobe.color[1][c], 1.0);
     }
     if (largest(reflectance) <= 0) continue;
     result.push_back({&lobe, largest(reflectance), reflectance});
@@ -78,21 +76,19 @@ std::string pbrt_snippet(const LobeModel& model) {
     if (!lobe.specular()) {
       out << "\"diffuse\" \"rgb reflectance\" [" << rgb(all[i].reflectance, " ") << "]\n";
     } else if (lobe.fresnel == Fresnel::conductor && all.size() == 1) {
-      out << "\"conductor\" \"rgb eta\" [" << rgb(lobe.color[0], " ") << "] \"rgb k\" ["
-          << rgb(lobe.color[1], " ") << "] \"float roughness\" " << lobe.shape[0].r
-          << " \"bool remaproughness\" false\n";
-    } else {
-      out << "\"conductor\" \"rgb reflectance\" [" << rgb(all[i].reflectance, " ")
+      out << "\"conductor\" \"rgb eta\" [" << rgb(lobe.color[0], " ") << "] \"rgb k\" [" << rgb(lobe.color[1], " ")
           << "] \"float roughness\" " << lobe.shape[0].r << " \"bool remaproughness\" false\n";
+    } else {
+      out << "\"conductor\" \"rgb reflectance\" [" << rgb(all[i].reflectance, " ") << "] \"float roughness\" "
+          << lobe.shape[0].r << " \"bool remaproughness\" false\n";
     }
   }
   // "amount" is the share of the second material.
   std::string last = "gonio" + std::to_string(all.size() - 1);
   for (size_t i = all.size() - 1; i-- > 0;) {
     const std::string name = "gonio_mix" + std::to_string(i);
-    out << "MakeNamedMaterial \"" << name
-        << "\" \"string type\" \"mix\" \"string materials\" [\"gonio" << i << "\" \"" << last
-        << "\"] \"float amount\" " << rest_weight(all, i) << "\n";
+    out << "MakeNamedMaterial \"" << name << "\" \"string type\" \"mix\" \"string materials\" [\"gonio" << i << "\" \""
+        << last << "\"] \"float amount\" " << rest_weight(all, i) << "\n";
     last = name;
   }
   out << "NamedMaterial \"" << last << "\"\n";
@@ -101,8 +97,7 @@ std::string pbrt_snippet(const LobeModel& model) {
 
 std::string mitsuba_snippet(const LobeModel& model) {
   bool clamped = false;
-  const std::vector<Part> all =
-      parts(model, {LobeKind::lambert, LobeKind::ggx, LobeKind::beckmann}, clamped);
+  const std::vector<Part> all = parts(model, {LobeKind::lambert, LobeKind::ggx, LobeKind::beckmann}, clamped);
   if (all.empty()) return {};
   std::ostringstream out;
   out.imbue(std::locale::classic());
@@ -113,27 +108,24 @@ std::string mitsuba_snippet(const LobeModel& model) {
   const auto write = [&](const Part& part, const std::string& indent) {
     const Lobe& lobe = *part.lobe;
     if (!lobe.specular()) {
-      out << indent << "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\""
-          << rgb(part.reflectance, ", ") << "\"/></bsdf>\n";
+      out << indent << "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"" << rgb(part.reflectance, ", ")
+          << "\"/></bsdf>\n";
       return;
     }
     out << indent << "<bsdf type=\"roughconductor\">\n"
-        << indent << "  <string name=\"distribution\" value=\"" << lobe_info(lobe.kind).id
-        << "\"/>\n"
+        << indent << "  <string name=\"distribution\" value=\"" << lobe_info(lobe.kind).id << "\"/>\n"
         << indent << "  <float name=\"alpha\" value=\"" << lobe.shape[0].r << "\"/>\n";
     if (lobe.fresnel == Fresnel::conductor && all.size() == 1) {
       // A plain <rgb> is refused above 1.
       const auto unbounded = [&](const char* name, const glm::dvec3& value) {
-        out << indent << "  <spectrum name=\"" << name
-            << "\" type=\"srgb\"><rgb name=\"color\" value=\"" << rgb(value, ", ")
-            << "\"/><boolean name=\"unbounded\" value=\"true\"/></spectrum>\n";
+        out << indent << "  <spectrum name=\"" << name << "\" type=\"srgb\"><rgb name=\"color\" value=\""
+            << rgb(value, ", ") << "\"/><boolean name=\"unbounded\" value=\"true\"/></spectrum>\n";
       };
       unbounded("eta", lobe.color[0]);
       unbounded("k", lobe.color[1]);
     } else {
       out << indent << "  <string name=\"material\" value=\"none\"/>\n"
-          << indent << "  <rgb name=\"specular_reflectance\" value=\""
-          << rgb(part.reflectance, ", ") << "\"/>\n";
+          << indent << "  <rgb name=\"specular_reflectance\" value=\"" << rgb(part.reflectance, ", ") << "\"/>\n";
     }
     out << indent << "</bsdf>\n";
   };

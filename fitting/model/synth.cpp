@@ -1,9 +1,9 @@
-#include <gonio/fitting/model/synth.h>
-#include <gonio/mapping/base/error.h>
-
 #include <cmath>
 #include <limits>
 #include <random>
+
+#include <gonio/fitting/model/synth.h>
+#include <gonio/mapping/base/error.h>
 
 namespace gonio {
 namespace {
@@ -11,8 +11,7 @@ namespace {
 // std::normal_distribution differs between standard libraries; Box-Muller on raw words does not.
 class Noise {
  public:
-  explicit Noise(const SynthOptions& options)
-      : sigma_(options.noise_sigma), engine_(options.seed) {}
+  explicit Noise(const SynthOptions& options) : sigma_(options.noise_sigma), engine_(options.seed) {}
 
   double operator()() {
     if (sigma_ == 0) return 1;
@@ -50,27 +49,23 @@ MerlFile synthesize_merl(const LobeModel& model, const SynthOptions& options) {
       for (int p = 0; p < file.n_phi_d; ++p, ++cell) {
         const double phi_d = (p + 0.5) / file.n_phi_d * pi<double>;
         // Rusinkiewicz 1998: the difference vector, turned by theta_h about y.
-        const glm::dvec3 diff(std::sin(theta_d) * std::cos(phi_d),
-                              std::sin(theta_d) * std::sin(phi_d), std::cos(theta_d));
-        const glm::dvec3 wi(cos_h * diff.x + sin_h * diff.z, diff.y,
-                            cos_h * diff.z - sin_h * diff.x);
+        const glm::dvec3 diff(std::sin(theta_d) * std::cos(phi_d), std::sin(theta_d) * std::sin(phi_d),
+                              std::cos(theta_d));
+        const glm::dvec3 wi(cos_h * diff.x + sin_h * diff.z, diff.y, cos_h * diff.z - sin_h * diff.x);
         const glm::dvec3 wo = reflect_about(wi, glm::dvec3(sin_h, 0, cos_h));
         if (!(wi.z > lowest && wo.z > lowest)) continue;
         const glm::dvec3 value = model.eval(wi, wo);
-        for (int c = 0; c < 3; ++c)
-          file.values[c * plane + cell] = value[c] * noise() / merl_scale[c];
+        for (int c = 0; c < 3; ++c) file.values[c * plane + cell] = value[c] * noise() / merl_scale[c];
       }
     }
   }
   return file;
 }
 
-MbsdfFile synthesize_mbsdf(const LobeModel& model, int n_theta, int n_phi,
-                         const SynthOptions& options) {
+MbsdfFile synthesize_mbsdf(const LobeModel& model, int n_theta, int n_phi, const SynthOptions& options) {
   if (n_theta < 2 || n_phi < 2) {
-    throw Error("synthetic grid: size is " + std::to_string(n_theta) + " x " +
-                std::to_string(n_theta) + " x " + std::to_string(n_phi) +
-                "; expected at least 2 in each direction");
+    throw Error("synthetic grid: size is " + std::to_string(n_theta) + " x " + std::to_string(n_theta) + " x " +
+                std::to_string(n_phi) + "; expected at least 2 in each direction");
   }
   MbsdfFile file;
   file.n_theta_in = file.n_theta_out = n_theta;
@@ -85,8 +80,7 @@ MbsdfFile synthesize_mbsdf(const LobeModel& model, int n_theta, int n_phi,
       const double theta_o = (o + 0.5) / n_theta * pi<double> / 2;
       for (int p = 0; p < n_phi; ++p) {
         const double phi = (p + 0.5) / n_phi * pi<double>;
-        const glm::dvec3 wo(std::sin(theta_o) * std::cos(phi), std::sin(theta_o) * std::sin(phi),
-                            std::cos(theta_o));
+        const glm::dvec3 wo(std::sin(theta_o) * std::cos(phi), std::sin(theta_o) * std::sin(phi), std::cos(theta_o));
         const bool measured = wi.z > lowest && wo.z > lowest;
         const glm::dvec3 value = model.eval(wi, wo);
         for (int c = 0; c < 3; ++c) {

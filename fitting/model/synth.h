@@ -1,10 +1,10 @@
 #pragma once
 
+#include <cstdint>
+
 #include <gonio/brdf/formats/mbsdf.h>
 #include <gonio/brdf/formats/merl.h>
 #include <gonio/fitting/model/model.h>
-
-#include <cstdint>
 
 namespace gonio {
 
@@ -28,7 +28,6 @@ MerlFile synthesize_merl(const LobeModel& model, const SynthOptions& options = {
 /// NaN where not measured. A lobe narrower than a cell is not resolved: 90 x 90 x 180 has cells of
 /// one degree.
 /// @throws Error if n_theta or n_phi is less than 2.
-MbsdfFile synthesize_mbsdf(const LobeModel& model, int n_theta = 90, int n_phi = 180,
-                         const SynthOptions& options = {});
+MbsdfFile synthesize_mbsdf(const LobeModel& model, int n_theta = 90, int n_phi = 180, const SynthOptions& options = {});
 
 }  // namespace gonio

@@ -1,15 +1,15 @@
 #pragma once
 
-#include <gonio/brdf/value/bsdf_sample.h>
-#include <gonio/brdf/table/table.h>
-#include <gonio/fitting/model/model.h>
-#include <gonio/fitting/sampling/sheared_ggx.h>
-
 #include <array>
 #include <cstddef>
 #include <memory>
 #include <optional>
 #include <vector>
+
+#include <gonio/brdf/table/table.h>
+#include <gonio/brdf/value/bsdf_sample.h>
+#include <gonio/fitting/model/model.h>
+#include <gonio/fitting/sampling/sheared_ggx.h>
 
 namespace gonio {
 
@@ -46,8 +46,7 @@ class LobeSampler {
   /// Takes up to a few seconds with Adaption::shapes.
   /// @throws Error if `table` is null, if the model has more than max_lobes specular lobes or an option is out of
   /// range.
-  LobeSampler(std::shared_ptr<const BrdfTable> table, const LobeModel& model,
-              const LobeSamplerOptions& options = {});
+  LobeSampler(std::shared_ptr<const BrdfTable> table, const LobeModel& model, const LobeSamplerOptions& options = {});
 
   /// Draws wo from two uniform numbers in [0, 1): u.x also chooses the part, and what is left of it
   /// is stretched to [0, 1) again. Empty for wi.z <= 0 and, with probability 0, for wo on the

@@ -1,13 +1,14 @@
-#include <ceres/ceres.h>
-#include <gonio/mapping/base/parallel.h>
-#include <gonio/fitting/fit/half_vectors.h>
-#include <gonio/fitting/sampling/proposal.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <string_view>
 #include <type_traits>
+
+#include <ceres/ceres.h>
+
+#include <gonio/fitting/fit/half_vectors.h>
+#include <gonio/fitting/sampling/proposal.h>
+#include <gonio/mapping/base/parallel.h>
 
 namespace gonio::detail {
 namespace {
@@ -18,8 +19,7 @@ constexpr double least_cos_d = 1e-4;  // of the half vectors that the quadrature
 
 glm::dvec3 incident(double theta_i) { return {std::sin(theta_i), 0, std::cos(theta_i)}; }
 
-double density(const Quadrature& quadrature, const Quadrature::Point& point,
-               const Proposal& proposal) {
+double density(const Quadrature& quadrature, const Quadrature::Point& point, const Proposal& proposal) {
   double sum = proposal.weight[0] * cosine_pdf(point.wo.z);
   for (size_t k = 0; k < proposal.shape.size(); ++k)
     sum += proposal.weight[k + 1] * proposal.shape[k].pdf(quadrature.wi, point.wo);
@@ -38,8 +38,7 @@ class Divergence : public ceres::CostFunction {
   Divergence(const Quadrature& quadrature, size_t lobes, double cosine_share)
       : quadrature_(quadrature), lobes_(lobes), cosine_share_(cosine_share) {
     set_num_residuals(static_cast<int>(quadrature.points.size()));
-    *mutable_parameter_block_sizes() = {static_cast<int>(1 + lobes),
-                                        static_cast<int>(shape_size * lobes)};
+    *mutable_parameter_block_sizes() = {static_cast<int>(1 + lobes), static_cast<int>(shape_size * lobes)};
   }
 
   bool Evaluate(double const* const* x, double* residuals, double** jacobians) const override {
@@ -126,8 +125,7 @@ std::vector<Proposal> other_starts(const Proposal& model, double cosine_share) {
   for (double alpha : widest) {
     for (double shear : lean) {
       Proposal start;
-      start.weight =
-          PerPart::Constant(lobes + 1, (1 - cosine_share) / static_cast<double>(lobes + 1));
+      start.weight = PerPart::Constant(lobes + 1, (1 - cosine_share) / static_cast<double>(lobes + 1));
       start.weight[0] += cosine_share;
       for (size_t k = 0; k < lobes; ++k) {
         const double width = alpha / std::pow(2.5, static_cast<double>(k));
@@ -182,9 +180,8 @@ void lend_shapes(std::vector<Proposal>& proposals) {
       if (proposals[i].weight[k + 1] >= dead_weight) living.push_back(i);
     }
     for (int i = 0; i < n && !living.empty(); ++i) {
-      const int nearest = *std::min_element(living.begin(), living.end(), [&](int a, int b) {
-        return std::abs(a - i) < std::abs(b - i);
-      });
+      const int nearest = *std::min_element(living.begin(), living.end(),
+                                            [&](int a, int b) { return std::abs(a - i) < std::abs(b - i); });
       proposals[i].shape[k] = proposals[nearest].shape[k];
     }
   }
@@ -214,8 +211,7 @@ Proposal albedo_proposal(const LobeModel& model, double theta_i, double cosine_s
     size_t part = 0;
     if (lobe.specular()) {
       // A shape that differs between channels: the proposal takes the mean.
-      const double width =
-          ggx_width(lobe.kind, (lobe.shape[0].r + lobe.shape[0].g + lobe.shape[0].b) / 3);
+      const double width = ggx_width(lobe.kind, (lobe.shape[0].r + lobe.shape[0].g + lobe.shape[0].b) / 3);
       proposal.shape.push_back({width, width, 0});
       part = proposal.shape.size();
     }
@@ -244,8 +240,7 @@ double relative_variance(const Quadrature& quadrature, const Proposal& proposal)
   return sum - 1;
 }
 
-Proposal refine_proposal(const Quadrature& quadrature, const Proposal& start, bool shapes,
-                         double cosine_share) {
+Proposal refine_proposal(const Quadrature& quadrature, const Proposal& start, bool shapes, double cosine_share) {
   const size_t lobes = start.shape.size();
   if (quadrature.points.empty() || lobes == 0) return start;
   PerPart root = start.weight;
@@ -259,8 +254,7 @@ Proposal refine_proposal(const Quadrature& quadrature, const Proposal& start, bo
     shape.push_back(s.shear);
   }
   ceres::Problem problem;
-  problem.AddResidualBlock(new Divergence(quadrature, lobes, cosine_share), nullptr, root.data(),
-                           shape.data());
+  problem.AddResidualBlock(new Divergence(quadrature, lobes, cosine_share), nullptr, root.data(), shape.data());
   for (int i = 0; i < static_cast<int>(shape.size()); ++i) {
     const bool shear = i % shape_size == 2;
     problem.SetParameterLowerBound(shape.data(), i, shear ? -max_shear : std::log(min_alpha));
@@ -282,30 +276,24 @@ Proposal refine_proposal(const Quadrature& quadrature, const Proposal& start, bo
     const double* p = shape.data() + k * shape_size;
     result.shape[k] = {std::exp(p[0]), std::exp(p[1]), p[2]};
   }
-  return relative_variance(quadrature, result) < relative_variance(quadrature, start) ? result
-                                                                                      : start;
+  return relative_variance(quadrature, result) < relative_variance(quadrature, start) ? result : start;
 }
 
-std::vector<Proposal> refine_all(const std::vector<Quadrature>& quadratures,
-                                 std::vector<Proposal> start, bool shapes, double cosine_share) {
+std::vector<Proposal> refine_all(const std::vector<Quadrature>& quadratures, std::vector<Proposal> start, bool shapes,
+                                 double cosine_share) {
   const size_t n = start.size();
   if (!shapes || start[0].shape.empty()) {
-    parallel_for(n, [&](size_t i) {
-      start[i] = refine_proposal(quadratures[i], start[i], false, cosine_share);
-    });
+    parallel_for(n, [&](size_t i) { start[i] = refine_proposal(quadratures[i], start[i], false, cosine_share); });
     return start;
   }
   const size_t middle = n / 2;
   std::vector<Proposal> candidates = other_starts(start[middle], cosine_share);
   candidates.push_back(start[middle]);
-  parallel_for(candidates.size(), [&](size_t i) {
-    candidates[i] = refine_from(quadratures[middle], candidates[i], cosine_share);
+  parallel_for(candidates.size(),
+               [&](size_t i) { candidates[i] = refine_from(quadratures[middle], candidates[i], cosine_share); });
+  start[middle] = *std::min_element(candidates.begin(), candidates.end(), [&](const Proposal& a, const Proposal& b) {
+    return relative_variance(quadratures[middle], a) < relative_variance(quadratures[middle], b);
   });
-  start[middle] = *std::min_element(candidates.begin(), candidates.end(),
-                                    [&](const Proposal& a, const Proposal& b) {
-                                      return relative_variance(quadratures[middle], a) <
-                                             relative_variance(quadratures[middle], b);
-                                    });
   parallel_for(2, [&](size_t side) {
     if (side == 0) {
       for (size_t i = middle; i-- > 0;) {

@@ -1,18 +1,18 @@
 #pragma once
 
+#include <vector>
+
 #include <Eigen/Core>
+
 #include <gonio/fitting/fit/brdf_function.h>
 #include <gonio/fitting/sampling/lobe_sampler.h>
 #include <gonio/fitting/sampling/sheared_ggx.h>
-
-#include <vector>
 
 /// How a LobeSampler finds its weights and shapes; not installed.
 namespace gonio::detail {
 
 /// A number for each part of the mixture: the cosine, then the lobes. Does not allocate.
-using PerPart =
-    Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, 1 + LobeSampler::max_lobes, 1>;
+using PerPart = Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, 1 + LobeSampler::max_lobes, 1>;
 
 /// The mixture at one incident angle.
 struct Proposal {
@@ -42,14 +42,13 @@ Proposal albedo_proposal(const LobeModel& model, double theta_i, double cosine_s
 double relative_variance(const Quadrature& quadrature, const Proposal& proposal);
 
 /// Improves a proposal by minimising the relative variance of a draw; never makes it worse.
-Proposal refine_proposal(const Quadrature& quadrature, const Proposal& start, bool shapes,
-                         double cosine_share);
+Proposal refine_proposal(const Quadrature& quadrature, const Proposal& start, bool shapes, double cosine_share);
 
 /// The proposals for ascending incident angles, weights and shapes refined. The best of several
 /// starts is found in the middle of the range; its neighbours start from it and so on outwards, so
 /// that shapes vary smoothly and can be interpolated. @param start the albedo proposals of the same
 /// angles
-std::vector<Proposal> refine_all(const std::vector<Quadrature>& quadratures,
-                                 std::vector<Proposal> start, bool shapes, double cosine_share);
+std::vector<Proposal> refine_all(const std::vector<Quadrature>& quadratures, std::vector<Proposal> start, bool shapes,
+                                 double cosine_share);
 
 }  // namespace gonio::detail

@@ -1,9 +1,10 @@
 #pragma once
 
-#include <gonio/fitting/lobes/angles.h>
-
 #include <cmath>
+
 #include <glm/vec3.hpp>
+
+#include <gonio/fitting/lobes/angles.h>
 
 namespace gonio {
 
@@ -43,8 +44,7 @@ struct ShearedGgx {
   template <class S>
   T pdf(const glm::vec<3, S>& wi, const glm::vec<3, S>& wo) const {
     T sum = unfolded_pdf(wi, glm::normalize(wi + wo));
-    if (wi.z > wo.z)
-      sum += unfolded_pdf(wi, glm::normalize(wi + glm::vec<3, S>(wo.x, wo.y, -wo.z)));
+    if (wi.z > wo.z) sum += unfolded_pdf(wi, glm::normalize(wi + glm::vec<3, S>(wo.x, wo.y, -wo.z)));
     return sum;
   }
 

@@ -1,11 +1,11 @@
-#include <gonio/mapping/base/atomic_file.h>
-#include <gonio/mapping/base/error.h>
-
 #include <cerrno>
 #include <fstream>
 #include <random>
 #include <string>
 #include <system_error>
+
+#include <gonio/mapping/base/atomic_file.h>
+#include <gonio/mapping/base/error.h>
 
 namespace gonio {
 namespace fs = std::filesystem;
@@ -15,8 +15,7 @@ void check_folder(const fs::path& folder) {
   if (!fs::is_directory(folder, code)) throw Error(folder.string() + ": no such folder");
 }
 
-void write_atomically(const fs::path& target,
-                      const std::function<void(const fs::path& temporary)>& write) {
+void write_atomically(const fs::path& target, const std::function<void(const fs::path& temporary)>& write) {
   std::error_code code;
   const bool exists = fs::exists(target, code);
   if (code == std::errc::filename_too_long) throw Error(target.string() + ": cannot be written: " + code.message());
@@ -41,13 +40,12 @@ void write_atomically(const fs::path& target,
   }
 }
 
-void write_stream_atomically(const fs::path& target,
-                             const std::function<void(std::ostream& stream)>& write) {
+void write_stream_atomically(const fs::path& target, const std::function<void(std::ostream& stream)>& write) {
   write_atomically(target, [&](const fs::path& temporary) {
     std::ofstream stream(temporary, std::ios::binary | std::ios::trunc);
     if (!stream)
-      throw Error(target.string() + ": folder: found one that takes no files (" + std::generic_category().message(errno) +
-                  "), expected one that does");
+      throw Error(target.string() + ": folder: found one that takes no files (" +
+                  std::generic_category().message(errno) + "), expected one that does");
     write(stream);
     stream.close();
     if (!stream) throw Error(target.string() + ": writing failed (is the disk full?)");

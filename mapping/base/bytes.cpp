@@ -1,9 +1,9 @@
-#include <gonio/mapping/base/bytes.h>
-#include <gonio/mapping/base/error.h>
-
 #include <algorithm>
 #include <fstream>
 #include <string_view>
+
+#include <gonio/mapping/base/bytes.h>
+#include <gonio/mapping/base/error.h>
 
 namespace gonio {
 namespace {
@@ -35,8 +35,8 @@ std::string read_bytes(const std::filesystem::path& path, std::uintmax_t limit) 
   std::string bytes(static_cast<std::size_t>(size), '\0');
   stream.read(bytes.data(), static_cast<std::streamsize>(size));
   if (static_cast<std::uintmax_t>(stream.gcount()) != size) {
-    throw Error(path.string() + ": content: found " + std::to_string(stream.gcount()) +
-                " bytes, expected " + std::to_string(size));
+    throw Error(path.string() + ": content: found " + std::to_string(stream.gcount()) + " bytes, expected " +
+                std::to_string(size));
   }
   if (bytes.compare(0, lfs_pointer.size(), lfs_pointer) == 0)
     throw Error(path.string() + ": found a Git LFS pointer in place of the file; git lfs pull fetches it");

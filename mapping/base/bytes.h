@@ -10,8 +10,7 @@
 namespace gonio {
 
 // Every binary format is little-endian and is read and written by copying bytes.
-static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,
-              "gonio reads tables on little-endian only");
+static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "gonio reads tables on little-endian only");
 
 /// Size in bytes of a regular file. @throws Error if there is no such file or it is not regular.
 std::uintmax_t regular_file_size(const std::filesystem::path& path);

@@ -1,7 +1,7 @@
-#include <gonio/mapping/base/format_number.h>
-
 #include <cmath>
 #include <cstdio>
+
+#include <gonio/mapping/base/format_number.h>
 
 namespace gonio {
 

@@ -1,5 +1,5 @@
-#include <gonio/mapping/base/problem.h>
 #include <gonio/mapping/base/error.h>
+#include <gonio/mapping/base/problem.h>
 
 namespace gonio {
 

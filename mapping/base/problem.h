@@ -10,8 +10,8 @@ struct Problem {
   std::string field;     ///< part of the file that is at fault
   std::string found;     ///< what it holds
   std::string expected;  ///< what it should hold
-  bool fatal;            ///< true: the file cannot be used; false: it loads, with a repair, a doubt or a reading of its own
-  int line = 0;          ///< of a text file, from 1; 0 if no single line is at fault
+  bool fatal;    ///< true: the file cannot be used; false: it loads, with a repair, a doubt or a reading of its own
+  int line = 0;  ///< of a text file, from 1; 0 if no single line is at fault
 };
 
 using Problems = std::vector<Problem>;

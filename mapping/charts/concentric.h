@@ -38,7 +38,7 @@ DiskPoint<T> square_to_disk(T u, T v) noexcept {
   T turn = select(ax > ay, part, T(0.25) - part);  // in the first quadrant
   turn = select(x < 0, T(0.5) - turn, turn);
   turn = select(y < 0, 1 - turn, turn);
-  const T to_rim = 2 * std::min(std::min(u, 1 - u), std::min(v, 1 - v));  // 1 - radius, without its rounding
+  const T to_rim = 2 * std::min(std::min(u, 1 - u), std::min(v, 1 - v));          // 1 - radius, without its rounding
   return {select(turn < 1, turn, T(0)), radius * radius, to_rim * (2 - to_rim)};  // a turn that rounds to 1 is 0 again
 }
 

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <vector>
 
+#include <gonio/mapping/charts/chart.h>
 #include <gonio/mapping/charts/concentric.h>
 #include <gonio/mapping/charts/half_vector.h>
 #include <gonio/mapping/charts/polar_map.h>
 #include <gonio/mapping/numeric/find_cell.h>
-#include <gonio/mapping/charts/chart.h>
 
 // What stacks in every storage share: the way from the disk of M_B to a diagram's two uniform numbers, and
 // from a diagram's disk to directions. Half diagrams serve phi < 0 as the mirror image of phi > 0: the lower

@@ -1,12 +1,13 @@
 #pragma once
 
-#include <gonio/mapping/charts/concentric.h>
-#include <gonio/mapping/numeric/fast_math.h>
-
 #include <algorithm>
 #include <cmath>
-#include <glm/vec3.hpp>
 #include <limits>
+
+#include <glm/vec3.hpp>
+
+#include <gonio/mapping/charts/concentric.h>
+#include <gonio/mapping/numeric/fast_math.h>
 
 namespace gonio {
 
@@ -31,8 +32,7 @@ inline const T least_gap = std::numeric_limits<T>::epsilon() / 2;
 /// @return a unit vector; relative error of each component at most 4 ulp, also next to the pole.
 template <class T>
 Vec3<T> polar_to_direction(Polar<T> p) noexcept {
-  const T sin_theta =
-      p.r * std::sqrt(2 - p.r * p.r);  // sin^2 = (1 - cos)(1 + cos), no cancellation
+  const T sin_theta = p.r * std::sqrt(2 - p.r * p.r);  // sin^2 = (1 - cos)(1 + cos), no cancellation
   const SinCos<T> phi = sin_cos(p.phi);
   return {sin_theta * phi.cos, sin_theta * phi.sin, p.gap * (1 + p.r)};
 }

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <gonio/mapping/diagram/diagram.h>
 #include <gonio/mapping/charts/polar_map.h>
+#include <gonio/mapping/diagram/diagram.h>
 
 namespace gonio {
 
@@ -35,7 +35,8 @@ class Blend {
     const T mass = rows.cumulative(last), target = std::clamp(v, T(0), T(1)) * mass;
     const int j = find_cell_of([&](int k) { return rows.cumulative(k); }, last + 1, target);
     const auto p = RadialPlace<T>::of(radial_cell(rows, j), d0_.r()[j + 1], target - rows.cumulative(j), rest * mass,
-                                      ends_mass(rows.cumulative(j + 1), mass)).off_end(least_gap<T>);
+                                      ends_mass(rows.cumulative(j + 1), mass))
+                       .off_end(least_gap<T>);
     return {{p.r(), phi[i] + a * across.width, p.gap()}, p.density()};
   }
 
@@ -76,8 +77,15 @@ class Blend {
     T cumulative(int j) const noexcept { return density(stride + j); }
   };
   Rows rows_at(int i, T a) const noexcept {
-    return {d0_.density(i), d0_.density(i + 1), d1_.density(i),  d1_.density(i + 1),
-            w0_ * (1 - a),  w0_ * a,            w1_ * (1 - a), w1_ * a, d0_.meridians_ * d0_.parallels_};
+    return {d0_.density(i),
+            d0_.density(i + 1),
+            d1_.density(i),
+            d1_.density(i + 1),
+            w0_ * (1 - a),
+            w0_ * a,
+            w1_ * (1 - a),
+            w1_ * a,
+            d0_.meridians_ * d0_.parallels_};
   }
   RadialCell<T> radial_cell(const Rows& rows, int j) const noexcept {
     const T* r = d0_.r();

@@ -1,26 +1,24 @@
-#include <gonio/mapping/diagram/diagram.h>
-
 #include <cmath>
 #include <string>
 #include <type_traits>
 
 #include <gonio/mapping/base/error.h>
+#include <gonio/mapping/diagram/diagram.h>
 
 namespace gonio {
 namespace {
 
 void check_lines(const std::vector<double>& lines, double last, const char* name) {
   const std::string field = std::string("diagram: ") + name;
-  if (lines.size() < 2)
-    throw Error(field + ": found " + std::to_string(lines.size()) + " lines, expected at least 2");
+  if (lines.size() < 2) throw Error(field + ": found " + std::to_string(lines.size()) + " lines, expected at least 2");
   for (std::size_t i = 0; i < lines.size(); ++i) {
     if (!std::isfinite(lines[i]) || (i > 0 && !(lines[i] > lines[i - 1])))
       throw Error(field + "[" + std::to_string(i) + "]: found " + std::to_string(lines[i]) +
                   ", expected strictly ascending values");
   }
   if (std::abs(lines.front()) > 1e-6 || std::abs(lines.back() - last) > 1e-6)
-    throw Error(field + ": found the range " + std::to_string(lines.front()) + " to " +
-                std::to_string(lines.back()) + ", expected 0 to " + std::to_string(last));
+    throw Error(field + ": found the range " + std::to_string(lines.front()) + " to " + std::to_string(lines.back()) +
+                ", expected 0 to " + std::to_string(last));
 }
 
 void check(const DiagramGrid& grid) {
@@ -28,8 +26,8 @@ void check(const DiagramGrid& grid) {
   check_lines(grid.r, 1.0, "parallels");
   const std::size_t expected = grid.phi.size() * grid.r.size();
   if (grid.density.size() != expected)
-    throw Error("diagram: density: found " + std::to_string(grid.density.size()) +
-                " values, expected " + std::to_string(expected));
+    throw Error("diagram: density: found " + std::to_string(grid.density.size()) + " values, expected " +
+                std::to_string(expected));
   double largest = 0;
   for (std::size_t k = 0; k < expected; ++k) {
     const double d = grid.density[k];
@@ -41,8 +39,8 @@ void check(const DiagramGrid& grid) {
   if (grid.azimuth == Azimuth::full)
     for (std::size_t j = 0; j < grid.r.size(); ++j)
       if (grid.at(grid.phi.size() - 1, j) != grid.at(0, j))
-        throw Error("diagram: density: the last meridian differs from the first at parallel " +
-                    std::to_string(j) + ", expected the same values at phi = 0 and 2 pi");
+        throw Error("diagram: density: the last meridian differs from the first at parallel " + std::to_string(j) +
+                    ", expected the same values at phi = 0 and 2 pi");
   if (largest == 0) throw Error("diagram: density: found zero everywhere, expected some mass");
 }
 
@@ -76,8 +74,7 @@ Diagram<T>::Diagram(const DiagramGrid& grid) : azimuth_(grid.azimuth) {
     Wide sum = 0;
     for (std::size_t j = 0; j < n; ++j) {
       if (below) below[j] = sum;
-      if (j + 1 < n)
-        sum += RadialCell<Wide>{r[j], Wide(r[j + 1]) - Wide(r[j]), Wide(d[j]), Wide(d[j + 1])}.mass(1);
+      if (j + 1 < n) sum += RadialCell<Wide>{r[j], Wide(r[j + 1]) - Wide(r[j]), Wide(d[j]), Wide(d[j + 1])}.mass(1);
     }
     return sum;
   };

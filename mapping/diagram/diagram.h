@@ -3,10 +3,10 @@
 #include <cstddef>
 #include <vector>
 
-#include <gonio/mapping/diagram/azimuth_cell.h>
-#include <gonio/mapping/numeric/find_cell.h>
 #include <gonio/mapping/charts/hemisphere.h>
+#include <gonio/mapping/diagram/azimuth_cell.h>
 #include <gonio/mapping/diagram/radial_cell.h>
+#include <gonio/mapping/numeric/find_cell.h>
 
 namespace gonio {
 
@@ -25,9 +25,7 @@ struct DiagramGrid {
   std::vector<double> density;  ///< M x N, meridian-major, finite and >= 0, in 1/sr up to a factor
 
   double& at(std::size_t meridian, std::size_t parallel) { return density[meridian * r.size() + parallel]; }
-  double at(std::size_t meridian, std::size_t parallel) const {
-    return density[meridian * r.size() + parallel];
-  }
+  double at(std::size_t meridian, std::size_t parallel) const { return density[meridian * r.size() + parallel]; }
 };
 
 /// One diagram ready to be sampled: the maps M_C and M_D of Havran et al. (2003), forward and
@@ -163,8 +161,7 @@ RadialPlace<T> Diagram<T>::place_at(const Meridian& m, T v, T rest) const noexce
   const T a = m.a, b = 1 - a;
   const int j = find_cell_of([=](int k) { return b * u0[k] + a * u1[k]; }, parallels_, target);  // eq. 18
   const T *d0 = density(m.i), *d1 = density(m.i + 1);
-  const RadialCell<T> cell{r()[j], r()[j + 1] - r()[j], b * d0[j] + a * d1[j],
-                           b * d0[j + 1] + a * d1[j + 1]};
+  const RadialCell<T> cell{r()[j], r()[j + 1] - r()[j], b * d0[j] + a * d1[j], b * d0[j + 1] + a * d1[j + 1]};
   return RadialPlace<T>::of(cell, r()[j + 1], target - (b * u0[j] + a * u1[j]), rest * m.mass,
                             ends_mass(b * u0[j + 1] + a * u1[j + 1], m.mass));
 }
@@ -180,8 +177,7 @@ T Diagram<T>::v_of(const Meridian& m, T radius) const noexcept {
   const int j = find_cell(r(), parallels_, radius);
   const T a = m.a, b = 1 - a;
   const T *d0 = density(m.i), *d1 = density(m.i + 1);
-  const RadialCell<T> cell{r()[j], r()[j + 1] - r()[j], b * d0[j] + a * d1[j],
-                           b * d0[j + 1] + a * d1[j + 1]};
+  const RadialCell<T> cell{r()[j], r()[j + 1] - r()[j], b * d0[j] + a * d1[j], b * d0[j + 1] + a * d1[j + 1]};
   const T s = std::clamp((radius - cell.r0) / cell.h, T(0), T(1));
   const T below = b * cumulative(m.i)[j] + a * cumulative(m.i + 1)[j];
   return m.mass > 0 ? std::min((below + cell.mass(s)) / m.mass, T(1)) : T(0);

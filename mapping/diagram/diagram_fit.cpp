@@ -1,5 +1,3 @@
-#include <gonio/mapping/diagram/diagram_fit.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,6 +5,7 @@
 #include <string>
 
 #include <gonio/mapping/base/error.h>
+#include <gonio/mapping/diagram/diagram_fit.h>
 
 namespace gonio {
 namespace {
@@ -130,7 +129,8 @@ void add_strip_errors(const Reference& ref, bool radial, std::vector<double>& er
   const std::size_t count = x.size();
   const double scale = 1 / ref.mass();
   // Arrays of sums, not an array of structures: the innermost loop runs on vectors.
-  std::vector<double> one(count + 1), sx(count + 1), sxx(count + 1), sg(count + 1), sgx(count + 1), sgg(count + 1), line(count);
+  std::vector<double> one(count + 1), sx(count + 1), sxx(count + 1), sg(count + 1), sgx(count + 1), sgg(count + 1),
+      line(count);
   for (std::size_t o = 0; o < other_weight.size(); ++o) {
     for (std::size_t k = 0; k < count; ++k) {
       const double gk = line[k] = radial ? ref.at(o, k) : ref.at(k, o);
@@ -140,12 +140,14 @@ void add_strip_errors(const Reference& ref, bool radial, std::vector<double>& er
     }
     for (std::size_t a = 0; a + 2 < count; ++a) {
       const double ga = line[a], xa = x[a];
-      const double one_a = one[a + 1], sx_a = sx[a + 1], sxx_a = sxx[a + 1], sg_a = sg[a + 1], sgx_a = sgx[a + 1], sgg_a = sgg[a + 1];
+      const double one_a = one[a + 1], sx_a = sx[a + 1], sxx_a = sxx[a + 1], sg_a = sg[a + 1], sgx_a = sgx[a + 1],
+                   sgg_a = sgg[a + 1];
       double* to = error.data() + a * count;
       for (std::size_t b = a + 2; b < count; ++b) {
         const double slope = (line[b] - ga) / (x[b] - xa), start = ga - slope * xa;
         const double e = (sgg[b] - sgg_a) - 2 * start * (sg[b] - sg_a) - 2 * slope * (sgx[b] - sgx_a) +
-                         start * start * (one[b] - one_a) + 2 * start * slope * (sx[b] - sx_a) + slope * slope * (sxx[b] - sxx_a);
+                         start * start * (one[b] - one_a) + 2 * start * slope * (sx[b] - sx_a) +
+                         slope * slope * (sxx[b] - sxx_a);
         to[b] += e > 0 ? e : 0;
       }
     }
@@ -247,8 +249,8 @@ DiagramGrid interpolate(const Reference& ref, Azimuth azimuth, const std::vector
 
 /// Richardson-Lucy steps on the densities at the crossings. @return the relative variance of sampling
 /// the reference by the result.
-double fit_densities(const Reference& ref, const std::vector<Position>& across,
-                   const std::vector<Position>& along, DiagramGrid& grid) {
+double fit_densities(const Reference& ref, const std::vector<Position>& across, const std::vector<Position>& along,
+                     DiagramGrid& grid) {
   constexpr int steps = 30;
   constexpr double over_relaxation = 1.7;  // converges for any power in (0, 2)
   const std::size_t m = grid.phi.size(), n = grid.r.size();
@@ -286,11 +288,13 @@ double fit_densities(const Reference& ref, const std::vector<Position>& across,
       for (std::size_t k = 0; k < n; ++k) r0[k] += (1 - a) * row_ratio[k], r1[k] += a * row_ratio[k];
     }
     if (step == steps) return square * model_mass / (mass * mass) - 1;
-    const auto share = [](std::vector<double>& values, std::size_t x, std::size_t y) { values[x] = values[y] = values[x] + values[y]; };
+    const auto share = [](std::vector<double>& values, std::size_t x, std::size_t y) {
+      values[x] = values[y] = values[x] + values[y];
+    };
     const std::size_t distinct = grid.azimuth == Azimuth::full ? m - 1 : m;
     for (std::vector<double>* values : {&ratio, &support}) {
       if (values == &support && step > 0) break;  // shared already
-      if (grid.azimuth == Azimuth::full)  // the seam is one meridian
+      if (grid.azimuth == Azimuth::full)          // the seam is one meridian
         for (std::size_t k = 0; k < n; ++k) share(*values, k, (m - 1) * n + k);
       double pole = 0;
       for (std::size_t i = 0; i < distinct; ++i) pole += (*values)[i * n];
@@ -341,7 +345,8 @@ Fit fit(const Lines& prepared, double tolerance) {
   // is that the fit leaves a sixth.
   double gain = 6;
   for (;;) {
-    const auto [m, n] = choose_size(prepared.across, prepared.most_across, prepared.along, prepared.most_along, gain * tolerance);
+    const auto [m, n] =
+        choose_size(prepared.across, prepared.most_across, prepared.along, prepared.most_along, gain * tolerance);
     Fit result{{prepared.azimuth, phi, r, prepared.across.lines(m), prepared.along.lines(n)}, {}};
     const SharedLines& lines = result.lines;
     const auto across = positions(phi, lines.across), along = positions(r, lines.along);

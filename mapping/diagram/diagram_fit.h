@@ -42,7 +42,7 @@ DiagramGrid fit_diagram(const DiskDensity& density, Azimuth azimuth, const FitLi
 /// the densities are fitted.
 struct SharedLines {
   Azimuth azimuth;
-  std::vector<double> phi, r;               ///< the reference grid
+  std::vector<double> phi, r;              ///< the reference grid
   std::vector<std::size_t> across, along;  ///< the lines among them, first and last included
 };
 

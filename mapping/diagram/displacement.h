@@ -1,8 +1,8 @@
 #pragma once
 
+#include <gonio/mapping/charts/polar_map.h>
 #include <gonio/mapping/diagram/diagram.h>
 #include <gonio/mapping/numeric/monotone_root.h>
-#include <gonio/mapping/charts/polar_map.h>
 
 namespace gonio {
 
@@ -25,8 +25,10 @@ class Displacement {
   PolarSample<T> sample(T u, T v, T rest) const noexcept {
     v = std::max(smallest_v, v);
     const Meridians m{d0_.meridian_at(u), d1_.meridian_at(u)};
-    const RadialPlace<T> p0 = d0_.place_at(m.first, v, rest).off_end(0), p1 = d1_.place_at(m.second, v, rest).off_end(0);
-    const T r = w0_ * p0.r() + w1_ * p1.r(), gap = w0_ * p0.gap() + w1_ * p1.gap(), phi = w0_ * m.first.phi + w1_ * m.second.phi;
+    const RadialPlace<T> p0 = d0_.place_at(m.first, v, rest).off_end(0),
+                         p1 = d1_.place_at(m.second, v, rest).off_end(0);
+    const T r = w0_ * p0.r() + w1_ * p1.r(), gap = w0_ * p0.gap() + w1_ * p1.gap(),
+            phi = w0_ * m.first.phi + w1_ * m.second.phi;
     if (rest < tail || gap < least_gap<T>) {
       const Polar<T> at{std::min(r, 1 - least_gap<T>), phi, std::max(gap, least_gap<T>)};
       return {at, invert(at).pdf};
@@ -104,7 +106,8 @@ class Displacement {
     void move(T way) noexcept {
       if (!(way >= first && way <= last)) {
         const int j = find_cell(d.r(), d.parallels_, outer ? 1 - way : way);
-        const T *d0 = d.density(m.i) + j, *d1 = d.density(m.i + 1) + j, *u0 = d.cumulative(m.i), *u1 = d.cumulative(m.i + 1);
+        const T *d0 = d.density(m.i) + j, *d1 = d.density(m.i + 1) + j, *u0 = d.cumulative(m.i),
+                *u1 = d.cumulative(m.i + 1);
         const T a = m.a, b = 1 - a, r1 = d.r()[j + 1];
         const RadialCell<T> cell{d.r()[j], r1 - d.r()[j], b * d0[0] + a * d1[0], b * d0[1] + a * d1[1]};
         const int n = d.parallels_ - 1;

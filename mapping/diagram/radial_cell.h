@@ -42,8 +42,8 @@ struct RadialCell {
     const T b = (r0 * delta + h * d0) * scale;
     const T a = 2 * h * delta * third * scale;
 
-    const T p3 = std::max(b * tau * third + c3 * c3, T(0));         // P / 3
-    const T q2 = c3 * c3 * c3 + (b * c3 + a * tau) * (tau / 2);     // Q / 2
+    const T p3 = std::max(b * tau * third + c3 * c3, T(0));      // P / 3
+    const T q2 = c3 * c3 * c3 + (b * c3 + a * tau) * (tau / 2);  // Q / 2
     const T root_p3 = sqrt(p3), cube = p3 * root_p3;
     // One real root (q2 >= cube): Cardan, here a sum of positive terms. Three: the trigonometric form, whose angle
     // is in [0, pi/3], so that the cosine is >= 1/2. Each form is 2 sqrt(P/3) where the other one holds, so that no
@@ -79,8 +79,8 @@ struct RadialPlace {
 
   /// @param inside the mass from the start of the cell to the draw. @param beyond the mass of the meridian behind the
   ///   draw, to all its digits. @param last whether the cell is the last one with mass: then its outer half is counted
-  ///   from its end, by `beyond`. `inside` is a difference of larger masses: it says little about the end of a cell whose
-  ///   density falls to 0 there.
+  ///   from its end, by `beyond`. `inside` is a difference of larger masses: it says little about the end of a cell
+  ///   whose density falls to 0 there.
   static RadialPlace of(const RadialCell<T>& cell, T r1, T inside, T beyond, bool last) noexcept {
     const T mass = cell.mass(1);
     const bool from_end = last && 2 * beyond < mass;

@@ -1,10 +1,10 @@
-#include <gonio/mapping/base/error.h>
-#include <gonio/mapping/light/emission.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <random>
+
+#include <gonio/mapping/base/error.h>
+#include <gonio/mapping/light/emission.h>
 
 namespace gonio {
 namespace {
@@ -44,8 +44,7 @@ class TexelTable {
       const double z0 = std::cos(pi<double> * j / rows), z1 = std::cos(pi<double> * (j + 1) / rows);
       double row = 0;
       for (int i = 0; i < columns; ++i) {
-        const LightAngles centre{2 * pi<double> * (i + 0.5) / columns,
-                                 pi<double> * (j + 0.5) / rows};
+        const LightAngles centre{2 * pi<double> * (i + 0.5) / columns, pi<double> * (j + 0.5) / rows};
         const double value = diagram.intensity(centre);
         texel_.push_back(value);
         conditional_.push_back(row += value);
@@ -69,10 +68,8 @@ class TexelTable {
     const auto i = column_at - first;
     const double before = i > 0 ? first[i - 1] : 0;
     const double s = std::clamp((target - before) / (*column_at - before), 0.0, 1.0);
-    const double z0 = std::cos(pi<double> * double(j) / rows_),
-                 z1 = std::cos(pi<double> * double(j + 1) / rows_);
-    return {{2 * pi<double> * (double(i) + s) / columns_,
-             std::acos(std::clamp(z0 + t * (z1 - z0), -1.0, 1.0))},
+    const double z0 = std::cos(pi<double> * double(j) / rows_), z1 = std::cos(pi<double> * double(j + 1) / rows_);
+    return {{2 * pi<double> * (double(i) + s) / columns_, std::acos(std::clamp(z0 + t * (z1 - z0), -1.0, 1.0))},
             texel_[static_cast<std::size_t>(j * columns_ + i)] / total_};
   }
 
@@ -101,8 +98,7 @@ EmissionQuality measure(std::string id, std::string method, int draws, const Dra
   double mean = 0, square = 0;
   for (double w : weight) mean += w / count;
   for (double w : weight) square += (w - mean) * (w - mean) / count;
-  return {std::move(id), std::move(method), mean, mean > 0 ? square / (mean * mean) : 0,
-          seconds.count() / count * 1e9};
+  return {std::move(id), std::move(method), mean, mean > 0 ? square / (mean * mean) : 0, seconds.count() / count * 1e9};
 }
 
 }  // namespace
@@ -119,8 +115,7 @@ template class EmissionSampler<float>;
 template class EmissionSampler<double>;
 
 std::vector<EmissionQuality> emission_quality(const LightDiagram& diagram, int draws) {
-  if (draws < 2)
-    throw Error("emission: found " + std::to_string(draws) + " draws a side, expected at least 2");
+  if (draws < 2) throw Error("emission: found " + std::to_string(draws) + " draws a side, expected at least 2");
   const EmissionSampler<float> sampler(diagram);
   const LightDiagram lit = without_dark_hemisphere(diagram);
   const double z_from = std::cos(lit.gamma.front()), z_to = std::cos(lit.gamma.back());

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <gonio/mapping/light/diagram/light_diagram.h>
-#include <gonio/mapping/sphere/sphere.h>
-
 #include <functional>
 #include <string>
 #include <vector>
+
+#include <gonio/mapping/light/diagram/light_diagram.h>
+#include <gonio/mapping/sphere/sphere.h>
 
 namespace gonio {
 
@@ -49,9 +49,7 @@ class EmissionSampler {
 
  private:
   Vec3<T> to_local(const Vec3<T>& w) const noexcept { return {dot(w, x_), dot(w, y_), dot(w, z_)}; }
-  static T dot(const Vec3<T>& a, const Vec3<T>& b) noexcept {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-  }
+  static T dot(const Vec3<T>& a, const Vec3<T>& b) noexcept { return a.x * b.x + a.y * b.y + a.z * b.z; }
   bool covered(const Vec3<T>& local) const noexcept { return local.z >= 0 || !map_.hemisphere(); }
 
   SphereDiagram<T> map_;
@@ -77,8 +75,7 @@ T EmissionSampler<T>::pdf(const Vec3<T>& direction) const noexcept {
 template <class T>
 T EmissionSampler<T>::intensity(const Vec3<T>& direction) const noexcept {
   const Vec3<T> local = to_local(direction);
-  return covered(local) ? static_cast<T>(mapped_flux_) * map_.theta_linear(map_.place_of(local))
-                        : T(0);
+  return covered(local) ? static_cast<T>(mapped_flux_) * map_.theta_linear(map_.place_of(local)) : T(0);
 }
 
 template <class T>

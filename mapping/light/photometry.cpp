@@ -1,8 +1,8 @@
-#include <gonio/mapping/base/error.h>
-#include <gonio/mapping/light/photometry.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include <gonio/mapping/base/error.h>
+#include <gonio/mapping/light/photometry.h>
 
 namespace gonio {
 namespace {
@@ -24,8 +24,7 @@ std::vector<Point> plane_profile(const LightDiagram& d, double c) {
     for (double edge : {d.gamma.front() - 1e-9, d.gamma.back() + 1e-9})
       if (edge > 0.1 && edge < 3) points.push_back({side * edge, 0});
   }
-  std::sort(points.begin(), points.end(),
-            [](const Point& a, const Point& b) { return a.angle < b.angle; });
+  std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.angle < b.angle; });
   return points;
 }
 
@@ -69,17 +68,15 @@ Photometry photometry(const LightDiagram& diagram) {
   Photometry p;
   p.flux = flux(diagram);  // the same in every frame
   p.downward_flux = flux(d, 0, pi<double> / 2);
-  const std::size_t best = static_cast<std::size_t>(
-      std::max_element(diagram.cd.begin(), diagram.cd.end()) - diagram.cd.begin());
+  const std::size_t best =
+      static_cast<std::size_t>(std::max_element(diagram.cd.begin(), diagram.cd.end()) - diagram.cd.begin());
   p.max_cd = diagram.cd[best];
   const std::size_t n = diagram.gamma.size();
-  p.max_at = to_light_angles(LightFrame{},
-                             diagram.frame.direction(diagram.c[best / n], diagram.gamma[best % n]));
+  p.max_at = to_light_angles(LightFrame{}, diagram.frame.direction(diagram.c[best / n], diagram.gamma[best % n]));
   if (std::sin(p.max_at.gamma) < 1e-9) p.max_at.c = 0;
   p.c0 = spread(d, 0);
   p.c90 = spread(d, pi<double> / 2);
-  for (int k = 0; k < 18; ++k)
-    p.zones.push_back(flux(d, pi<double> * k / 18, pi<double> * (k + 1) / 18));
+  for (int k = 0; k < 18; ++k) p.zones.push_back(flux(d, pi<double> * k / 18, pi<double> * (k + 1) / 18));
   return p;
 }
 
@@ -103,8 +100,7 @@ std::string flux_unit(const Luminaire& luminaire) {
 LightDiagram normalised(LightDiagram diagram, LightNormalisation mode, double target) {
   if (mode == LightNormalisation::none) return diagram;
   const double now = mode == LightNormalisation::flux ? flux(diagram) : max_intensity(diagram);
-  if (!(now > 0))
-    throw Error("light: normalisation: found a diagram that is dark, expected some light");
+  if (!(now > 0)) throw Error("light: normalisation: found a diagram that is dark, expected some light");
   for (double& v : diagram.cd) v *= target / now;
   return diagram;
 }

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <gonio/mapping/light/files/luminaire.h>
-
 #include <vector>
+
+#include <gonio/mapping/light/files/luminaire.h>
 
 namespace gonio {
 

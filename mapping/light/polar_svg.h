@@ -1,10 +1,10 @@
 #pragma once
 
-#include <gonio/mapping/light/files/luminaire.h>
-
 #include <string>
 #include <utility>
 #include <vector>
+
+#include <gonio/mapping/light/files/luminaire.h>
 
 namespace gonio {
 

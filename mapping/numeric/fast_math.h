@@ -51,15 +51,16 @@ template <class T>
 struct SinCos {
   T sin, cos;
 };
-/// Sine and cosine of |x| <= 8, errors below 1e-7 besides half the last digit of x. Cephes' polynomials (sinf.c) over an eighth of a
-/// turn either side of the axes.
+/// Sine and cosine of |x| <= 8, errors below 1e-7 besides half the last digit of x. Cephes' polynomials (sinf.c) over
+/// an eighth of a turn either side of the axes.
 inline SinCos<float> sin_cos(float x) noexcept {
   const int k = static_cast<int>(x * 0.636619772f + std::copysign(0.5f, x));  // the nearest axis, in quarter turns
   const auto quarter = static_cast<float>(k);
   const float t = (x - quarter * 1.5703125f) - quarter * 4.83826792e-4f;  // pi / 2; the first product is exact
   const float z = t * t;
   const float s = t + t * z * (-1.6666654611e-1f + z * (8.3321608736e-3f - 1.9515295891e-4f * z));
-  const float c = (1 - 0.5f * z) + z * z * (4.166664568298827e-2f + z * (-1.388731625493765e-3f + 2.443315711809948e-5f * z));
+  const float c =
+      (1 - 0.5f * z) + z * z * (4.166664568298827e-2f + z * (-1.388731625493765e-3f + 2.443315711809948e-5f * z));
   const bool odd = (k & 1) != 0;
   const float sine = select(odd, c, s), cosine = select(odd, s, c);
   return {select((k & 2) != 0, -sine, sine), select(((k + 1) & 2) != 0, -cosine, cosine)};

@@ -1,8 +1,8 @@
-#include <gonio/mapping/base/error.h>
-#include <gonio/mapping/sphere/sphere.h>
-
 #include <cmath>
 #include <string>
+
+#include <gonio/mapping/base/error.h>
+#include <gonio/mapping/sphere/sphere.h>
 
 namespace gonio {
 namespace {
@@ -13,33 +13,31 @@ void check_ascending(const std::vector<double>& lines, const char* name) {
                 " lines, expected at least 2, the first at 0");
   for (std::size_t i = 1; i < lines.size(); ++i)
     if (!std::isfinite(lines[i]) || !(lines[i] > lines[i - 1]))
-      throw Error(std::string("sphere: ") + name + "[" + std::to_string(i) + "]: found " +
-                  std::to_string(lines[i]) + ", expected ascending values");
+      throw Error(std::string("sphere: ") + name + "[" + std::to_string(i) + "]: found " + std::to_string(lines[i]) +
+                  ", expected ascending values");
 }
 
 std::size_t check(const SphereGrid& grid) {
   check_ascending(grid.phi, "meridians");
   check_ascending(grid.theta, "parallels");
   if (std::abs(grid.phi.back() - 2 * pi<double>) > 1e-6)
-    throw Error("sphere: meridians: found the last at " + std::to_string(grid.phi.back()) +
-                ", expected 2 pi");
+    throw Error("sphere: meridians: found the last at " + std::to_string(grid.phi.back()) + ", expected 2 pi");
   std::size_t equator = 0;
-  while (equator < grid.theta.size() && std::abs(grid.theta[equator] - pi<double> / 2) > 1e-6)
-    ++equator;
+  while (equator < grid.theta.size() && std::abs(grid.theta[equator] - pi<double> / 2) > 1e-6) ++equator;
   if (equator == grid.theta.size() ||
       (equator + 1 < grid.theta.size() && std::abs(grid.theta.back() - pi<double>) > 1e-6))
     throw Error("sphere: parallels: expected one at pi/2 and the last at pi/2 or pi");
   const std::size_t n = grid.theta.size(), count = grid.phi.size() * n;
   if (grid.density.size() != count)
-    throw Error("sphere: density: found " + std::to_string(grid.density.size()) +
-                " values, expected " + std::to_string(count));
+    throw Error("sphere: density: found " + std::to_string(grid.density.size()) + " values, expected " +
+                std::to_string(count));
   for (double d : grid.density)
     if (!std::isfinite(d) || d < 0)
       throw Error("sphere: density: found " + std::to_string(d) + ", expected finite values >= 0");
   for (std::size_t j = 0; j < n; ++j)
     if (grid.density[j] != grid.density[count - n + j])
-      throw Error("sphere: density: the last meridian differs from the first at parallel " +
-                  std::to_string(j) + ", expected the same values at phi = 0 and 2 pi");
+      throw Error("sphere: density: the last meridian differs from the first at parallel " + std::to_string(j) +
+                  ", expected the same values at phi = 0 and 2 pi");
   return equator;
 }
 
@@ -92,11 +90,9 @@ SphereDiagram<T>::SphereDiagram(const SphereGrid& grid) {
   double total = 0;
   for (std::size_t i = 0; i + 1 < m; ++i)
     total += (double(phi[i + 1]) - double(phi[i])) / 2 *
-             (integrate(i, grid.density.data(), nullptr) +
-              integrate(i + 1, grid.density.data(), nullptr));
+             (integrate(i, grid.density.data(), nullptr) + integrate(i + 1, grid.density.data(), nullptr));
   if (!(total > 0) || !std::isfinite(total))
-    throw Error("sphere: density: the mass is " + std::to_string(total) +
-                ", expected a positive finite number");
+    throw Error("sphere: density: the mass is " + std::to_string(total) + ", expected a positive finite number");
   scale_ = 1 / total;
   for (std::size_t k = 0; k < m * n; ++k) density[k] = static_cast<T>(grid.density[k] * scale_);
 

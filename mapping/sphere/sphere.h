@@ -1,20 +1,18 @@
 #pragma once
 
-#include <gonio/mapping/charts/concentric.h>
-#include <gonio/mapping/diagram/diagram.h>
-
 #include <cstddef>
 #include <vector>
+
+#include <gonio/mapping/charts/concentric.h>
+#include <gonio/mapping/diagram/diagram.h>
 
 namespace gonio {
 
 /// A goniometric diagram on the sphere as data: densities at the crossings of M meridians and N
 /// parallels, any positive scale.
 struct SphereGrid {
-  std::vector<double>
-      phi;  ///< M >= 2 meridians [rad], ascending from 0 to 2 pi; the last repeats the first
-  std::vector<double>
-      theta;  ///< N >= 2 parallels [rad], ascending from 0 to pi/2 or pi, with one at pi/2
+  std::vector<double> phi;      ///< M >= 2 meridians [rad], ascending from 0 to 2 pi; the last repeats the first
+  std::vector<double> theta;    ///< N >= 2 parallels [rad], ascending from 0 to pi/2 or pi, with one at pi/2
   std::vector<double> density;  ///< M x N, meridian-major, finite and >= 0, per solid angle
 };
 
@@ -88,9 +86,7 @@ class SphereDiagram {
   const T* density(int i) const noexcept { return radius() + parallels_ + i * parallels_; }
   const T* cumulative(int i) const noexcept { return density(meridians_ + i); }
   T meridian_mass(int i) const noexcept { return cumulative(i)[parallels_ - 1]; }
-  T density_at(const Place& p, int j) const noexcept {
-    return (1 - p.a) * density(p.i)[j] + p.a * density(p.i + 1)[j];
-  }
+  T density_at(const Place& p, int j) const noexcept { return (1 - p.a) * density(p.i)[j] + p.a * density(p.i + 1)[j]; }
   /// The cell j of a meridian, in its hemisphere's chart: beyond the equator it runs backwards.
   RadialCell<T> cell(const Place& p) const noexcept {
     const T d0 = density_at(p, p.j), d1 = density_at(p, p.j + 1);
@@ -102,8 +98,7 @@ class SphereDiagram {
 
   int meridians_, parallels_, equator_;
   double scale_;
-  std::vector<T>
-      values_;  // phi | cumulative_phi | theta | radius | density | cumulative, one block
+  std::vector<T> values_;  // phi | cumulative_phi | theta | radius | density | cumulative, one block
 };
 
 template <class T>
@@ -149,9 +144,7 @@ typename SphereDiagram<T>::Place SphereDiagram<T>::place_of(const Vec3<T>& w) co
   p.mass = (1 - p.a) * meridian_mass(p.i) + p.a * meridian_mass(p.i + 1);
   const bool near = w.z >= 0 || hemisphere();
   // 1 - |cos| as sin^2 / (1 + |cos|): no digits lost next to the poles.
-  p.radius = w.z < 0 && near
-                 ? T(1)
-                 : std::min(std::sqrt((w.x * w.x + w.y * w.y) / (1 + std::abs(w.z))), T(1));
+  p.radius = w.z < 0 && near ? T(1) : std::min(std::sqrt((w.x * w.x + w.y * w.y) / (1 + std::abs(w.z))), T(1));
   p.gap = w.z < 0 && near ? T(0) : std::abs(w.z) / (1 + p.radius);
   if (hemisphere()) p.gap = std::max(least_gap, p.gap);
   const T* r = radius();

@@ -1,13 +1,12 @@
-#include <gonio/mapping/stack/packed_stack.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
 
-#include <gonio/mapping/numeric/code16.h>
 #include <gonio/mapping/base/error.h>
 #include <gonio/mapping/charts/folded_disk.h>
+#include <gonio/mapping/numeric/code16.h>
+#include <gonio/mapping/stack/packed_stack.h>
 
 namespace gonio {
 
@@ -43,8 +42,8 @@ class PackedStack::Blended {
       sum += cells.mass[k];
     }
     const bool ends = b * block + j == stack_.parallels_ - 2 || ends_mass(rows.start(b) + before + cells.mass[j], mass);
-    const auto p =
-        RadialPlace<float>::of(cells.cell(j), cells.r[j + 1], inside - before, rest * mass, ends).off_end(least_gap<float>);
+    const auto p = RadialPlace<float>::of(cells.cell(j), cells.r[j + 1], inside - before, rest * mass, ends)
+                       .off_end(least_gap<float>);
     return {{p.r(), phi[0] + a * across.width, p.gap()}, p.density()};
   }
 
@@ -100,16 +99,25 @@ class PackedStack::Blended {
 
     Rows(const Blended& d, int i, float a) noexcept
         : stack(d.stack_),
-          a0(stack.codes(d.k0_, i)), a1(stack.codes(d.k0_, i + 1)),
-          b0(stack.codes(d.k1_, i)), b1(stack.codes(d.k1_, i + 1)),
-          ends_a0(stack.ends(d.k0_, i)), ends_a1(stack.ends(d.k0_, i + 1)),
-          ends_b0(stack.ends(d.k1_, i)), ends_b1(stack.ends(d.k1_, i + 1)),
-          wa0(d.w0_ * (1 - a)), wa1(d.w0_ * a), wb0(d.w1_ * (1 - a)), wb1(d.w1_ * a) {}
+          a0(stack.codes(d.k0_, i)),
+          a1(stack.codes(d.k0_, i + 1)),
+          b0(stack.codes(d.k1_, i)),
+          b1(stack.codes(d.k1_, i + 1)),
+          ends_a0(stack.ends(d.k0_, i)),
+          ends_a1(stack.ends(d.k0_, i + 1)),
+          ends_b0(stack.ends(d.k1_, i)),
+          ends_b1(stack.ends(d.k1_, i + 1)),
+          wa0(d.w0_ * (1 - a)),
+          wa1(d.w0_ * a),
+          wb0(d.w1_ * (1 - a)),
+          wb1(d.w1_ * a) {}
 
     float density(int j) const noexcept {
       return wa0 * decode16(a0[j]) + wa1 * decode16(a1[j]) + wb0 * decode16(b0[j]) + wb1 * decode16(b1[j]);
     }
-    float end(int b) const noexcept { return wa0 * ends_a0[b] + wa1 * ends_a1[b] + wb0 * ends_b0[b] + wb1 * ends_b1[b]; }
+    float end(int b) const noexcept {
+      return wa0 * ends_a0[b] + wa1 * ends_a1[b] + wb0 * ends_b0[b] + wb1 * ends_b1[b];
+    }
     float start(int b) const noexcept { return b > 0 ? end(b - 1) : 0.0f; }
     float mass() const noexcept { return end(stack.blocks_ - 1); }
   };
@@ -167,7 +175,8 @@ PackedStack::PackedStack(const StackGrid& grid) : chart_(grid.chart) {
       const std::uint16_t* code = codes(k, i);
       double mass = 0;
       for (int j = 0; j + 1 < parallels_; ++j) {
-        mass += RadialCell<double>{r()[j], double{r()[j + 1]} - r()[j], decode16(code[j]), decode16(code[j + 1])}.mass(1);
+        mass +=
+            RadialCell<double>{r()[j], double{r()[j + 1]} - r()[j], decode16(code[j]), decode16(code[j + 1])}.mass(1);
         store(ends(k, i) + j / block, mass);
       }
       if (i > 0) sum += (double{phi()[i]} - phi()[i - 1]) * (previous + mass) / 2;
@@ -204,7 +213,8 @@ std::optional<SquareInverse<float>> PackedStack::invert(float theta_i, const Vec
 }
 
 std::size_t PackedStack::bytes() const noexcept {
-  return sizeof(*this) + (theta_i_.capacity() + values_.capacity()) * sizeof(float) + codes_.capacity() * sizeof(std::uint16_t);
+  return sizeof(*this) + (theta_i_.capacity() + values_.capacity()) * sizeof(float) +
+         codes_.capacity() * sizeof(std::uint16_t);
 }
 
 StackGrid PackedStack::grid() const {

@@ -62,9 +62,7 @@ class PackedStack {
   const float* ends(int k, int i) const noexcept {
     return cumulative_phi(static_cast<int>(theta_i_.size())) + (k * meridians_ + i) * blocks_;
   }
-  const std::uint16_t* codes(int k, int i) const noexcept {
-    return codes_.data() + (k * meridians_ + i) * parallels_;
-  }
+  const std::uint16_t* codes(int k, int i) const noexcept { return codes_.data() + (k * meridians_ + i) * parallels_; }
 
   Chart chart_;
   int meridians_, parallels_, blocks_;

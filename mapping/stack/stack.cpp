@@ -1,10 +1,9 @@
-#include <gonio/mapping/stack/stack.h>
-
 #include <cmath>
 #include <limits>
 
 #include <gonio/mapping/base/error.h>
 #include <gonio/mapping/charts/folded_disk.h>
+#include <gonio/mapping/stack/stack.h>
 
 namespace gonio {
 namespace {
@@ -31,15 +30,20 @@ T pdf_one(const Diagram<T>& diagram, Polar<T> at) noexcept {
 
 const char* to_string(Interpolation interpolation) noexcept {
   switch (interpolation) {
-    case Interpolation::nearest: return "nearest";
-    case Interpolation::mixture: return "mixture";
-    case Interpolation::blend: return "blend";
-    default: return "displacement";
+    case Interpolation::nearest:
+      return "nearest";
+    case Interpolation::mixture:
+      return "mixture";
+    case Interpolation::blend:
+      return "blend";
+    default:
+      return "displacement";
   }
 }
 
 template <class T>
-Stack<T>::Stack(const StackGrid& grid, Interpolation interpolation) : interpolation_(interpolation), chart_(grid.chart) {
+Stack<T>::Stack(const StackGrid& grid, Interpolation interpolation)
+    : interpolation_(interpolation), chart_(grid.chart) {
   if (grid.theta_i.empty() || grid.theta_i.size() != grid.diagrams.size())
     throw Error("stack: found " + std::to_string(grid.theta_i.size()) + " incident angles and " +
                 std::to_string(grid.diagrams.size()) + " diagrams, expected as many, at least one");
@@ -105,8 +109,7 @@ T Stack<T>::pdf(T theta_i, const Vec3<T>& wo) const noexcept {
   if (p.alpha == 0) return pdf_one(p.first, d.at) / d.jacobian;
   if (interpolation_ == Interpolation::mixture)
     return ((1 - p.alpha) * pdf_one(p.first, d.at) + p.alpha * pdf_one(p.second, d.at)) / d.jacobian;
-  if (interpolation_ == Interpolation::blend)
-    return Blend<T>(p.first, p.second, p.alpha).pdf(d.at) / d.jacobian;
+  if (interpolation_ == Interpolation::blend) return Blend<T>(p.first, p.second, p.alpha).pdf(d.at) / d.jacobian;
   return Displacement<T>(p.first, p.second, p.alpha).invert(d.at).pdf / d.jacobian;
 }
 

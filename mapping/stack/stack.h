@@ -4,17 +4,17 @@
 #include <string>
 #include <vector>
 
-#include <gonio/mapping/diagram/blend.h>
-#include <gonio/mapping/diagram/displacement.h>
 #include <gonio/mapping/charts/chart.h>
 #include <gonio/mapping/charts/half_vector.h>
+#include <gonio/mapping/diagram/blend.h>
+#include <gonio/mapping/diagram/displacement.h>
 
 namespace gonio {
 
 /// How a stack samples between two of its diagrams.
 enum class Interpolation {
-  nearest,      ///< the diagram whose theta_i is closer; the pdf jumps half way between
-  mixture,      ///< one of the two at random, by the weights; two half-height lobes, not coherent
+  nearest,       ///< the diagram whose theta_i is closer; the pdf jumps half way between
+  mixture,       ///< one of the two at random, by the weights; two half-height lobes, not coherent
   displacement,  ///< the images of (u, v) interpolated: one lobe that moves; see Displacement
   blend          ///< the densities interpolated, on lines that all diagrams share; see Blend
 };
@@ -60,10 +60,10 @@ class Stack {
   ///
   /// In float, where the density is at least 1e-6 of its largest value: sample() then invert() comes
   /// back to (u, v) within 1e-4 (not for mixtures); invert() then sample() to `wo` within 5e-4 in each
-  /// component (half-vector chart: 1e-3; mixtures: 1e-2, in the half-vector chart 5e-2 as measured), or as near as the floats u and v let it come where the map is steep.
-  /// In the half-vector chart these bounds hold for `blend` up to theta_i = 0.9, the last with 2e-3; beyond, a
-  /// float wo holds its half vector to 1 / cos theta_i ulp, and beside the horizon displacement may find no
-  /// way back.
+  /// component (half-vector chart: 1e-3; mixtures: 1e-2, in the half-vector chart 5e-2 as measured), or as near as the
+  /// floats u and v let it come where the map is steep. In the half-vector chart these bounds hold for `blend` up to
+  /// theta_i = 0.9, the last with 2e-3; beyond, a float wo holds its half vector to 1 / cos theta_i ulp, and beside the
+  /// horizon displacement may find no way back.
   std::optional<SquareInverse<T>> invert(T theta_i, const Vec3<T>& wo) const noexcept;
 
   Interpolation interpolation() const noexcept { return interpolation_; }

@@ -1,16 +1,16 @@
-#include <gonio/brdf/batch/batch_stack.h>
-
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
 
-#include <gonio/brdf/proof/statistics/chi_square.h>
+#include <gtest/gtest.h>
+
+#include <gonio/brdf/batch/batch_stack.h>
 #include <gonio/brdf/proof/gallery.h>
+#include <gonio/brdf/proof/statistics/chi_square.h>
 #include <gonio/brdf/proof/statistics/random.h>
 #include <gonio/mapping/base/error.h>
+
 #include "tests/support/batch_targets.h"
 
 namespace gonio {
@@ -127,7 +127,8 @@ TEST_P(BatchStackOn, InvertComesBack) {
   });
 }
 
-TEST_P(BatchStackOn, EveryLength) {  // what does not fill a vector is computed all the same, and nothing behind it is touched
+TEST_P(BatchStackOn,
+       EveryLength) {  // what does not fill a vector is computed all the same, and nothing behind it is touched
   const StackGrid grid = proof::gallery_stacks().front().grid;
   const BatchStack batch(Stack<float>(grid, Interpolation::displacement));
   const Drawn all = draw(batch, 70, 3);
@@ -186,7 +187,8 @@ TEST_P(BatchStackOn, DrawsFollowThePdf) {
     EXPECT_TRUE(result.passed(significance)) << result.summary();
     EXPECT_NEAR(result.pdf_integral, 1, 2e-3);
     Drawn turned = draw(batch, draws, 5, theta_i);  // the control: by 0.03 rad towards +x
-    for (std::size_t k = 0; k < draws; ++k) turned.x[k] += 0.03f * turned.z[k], turned.z[k] -= std::min(0.03f * turned.x[k], 0.9f * turned.z[k]);
+    for (std::size_t k = 0; k < draws; ++k)
+      turned.x[k] += 0.03f * turned.z[k], turned.z[k] -= std::min(0.03f * turned.x[k], 0.9f * turned.z[k]);
     EXPECT_FALSE(against(turned).passed(significance));
   });
 }

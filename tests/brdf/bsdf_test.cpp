@@ -1,29 +1,29 @@
-#include <gonio/brdf/build/make_bsdf.h>
-
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <glm/common.hpp>
-#include <glm/geometric.hpp>
 #include <limits>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include <gonio/brdf/build/stack/build_stack.h>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
 #include <gonio/brdf/build/compact/colour_of_table.h>
 #include <gonio/brdf/build/compact/fit_compact.h>
-#include <gonio/brdf/proof/samplers/baseline.h>
+#include <gonio/brdf/build/make_bsdf.h>
+#include <gonio/brdf/build/stack/build_stack.h>
 #include <gonio/brdf/proof/gallery.h>
 #include <gonio/brdf/proof/gtest.h>
+#include <gonio/brdf/proof/samplers/baseline.h>
 #include <gonio/brdf/proof/statistics/random.h>
 #include <gonio/brdf/table/albedo.h>
 #include <gonio/brdf/value/luminance.h>
 #include <gonio/fitting/model/synth.h>
 #include <gonio/mapping/base/error.h>
+
 #include "tests/support/batch_subject.h"
 #include "tests/support/batch_targets.h"
 
@@ -84,7 +84,10 @@ Case make(const std::shared_ptr<const BrdfTable>& from, Interpolation interpolat
   options.meridians = options.parallels = 16;
   options.chart = chart;
   options.interpolation = interpolation;
-  BsdfData data{build_stack(*from, options), interpolation, interpolation == Interpolation::blend ? Storage::packed16 : Storage::float32, {}};
+  BsdfData data{build_stack(*from, options),
+                interpolation,
+                interpolation == Interpolation::blend ? Storage::packed16 : Storage::float32,
+                {}};
   const std::string name = to_string(interpolation);
   if (!self_contained) return {StackBsdf(data, from), Bsdf(data, from), name + ", table"};
   const Stack<float> stack = sampled_stack(data);
@@ -137,7 +140,8 @@ TEST_P(BsdfOn, OneElementIsThatOfABatch) {
       if (!s) continue;
       ASSERT_LT(glm::length(d.wo[k] - s->wo), 1e-4f + spread(c.plain, d.wi[k], {d.u[k], d.v[k]})) << k;
       ASSERT_NEAR(d.pdf[k], s->pdf, 2e-3 * s->pdf + 5e-4 * largest) << k;  // as below
-      const glm::vec3 weight = c.bsdf.self_contained() ? d.weight[k] : c.plain.eval(d.wi[k], s->wo) * (s->wo.z / s->pdf);
+      const glm::vec3 weight =
+          c.bsdf.self_contained() ? d.weight[k] : c.plain.eval(d.wi[k], s->wo) * (s->wo.z / s->pdf);
       for (int i = 0; i < 3; ++i) ASSERT_NEAR(s->weight[i], weight[i], 1e-4 * weight[i]) << k;
     }
   }
@@ -160,7 +164,8 @@ TEST_P(BsdfOn, SamplesAsStackBsdfDoes) {
       ASSERT_LT(glm::length(d.wo[k] - s->wo), 1e-4f + spread(c.plain, d.wi[k], {d.u[k], d.v[k]})) << k;
       // Of two directions, a little apart: next to the horizon the density falls to 0 within few floats of v.
       ASSERT_NEAR(d.pdf[k], s->pdf, 2e-3 * s->pdf + 5e-4 * largest) << k;
-      const glm::vec3 weight = c.bsdf.self_contained() ? s->weight : c.plain.eval(d.wi[k], d.wo[k]) * (d.wo[k].z / d.pdf[k]);
+      const glm::vec3 weight =
+          c.bsdf.self_contained() ? s->weight : c.plain.eval(d.wi[k], d.wo[k]) * (d.wo[k].z / d.pdf[k]);
       for (int i = 0; i < 3; ++i) ASSERT_NEAR(d.weight[k][i], weight[i], 1e-5 * weight[i] + 1e-6) << k;
     }
   }
@@ -197,7 +202,8 @@ TEST_P(BsdfOn, InvariantsHold) {
   options.runs = 60;
   for (const Case& c : cases()) {
     for (const double theta_i : {0.0, 0.8, 1.3}) {
-      // f_r of a self-contained BSDF is W pdf / cos theta_o: as exact as that pdf, whose bound is for 1 % of the peak here.
+      // f_r of a self-contained BSDF is W pdf / cos theta_o: as exact as that pdf, whose bound is for 1 % of the peak
+      // here.
       options.weight_bound = c.bsdf.self_contained() ? 1e-2 : 1e-4;
       options.density_floor = c.bsdf.self_contained() ? 1e-2 : 1e-6;
       options.direction_bound = c.bsdf.chart() == Chart::half ? 1e-3 : 5e-4;
@@ -257,7 +263,8 @@ TEST_P(BsdfOn, NothingBelowTheHorizon) {
   }
 }
 
-// f_r of a self-contained BSDF stays what it is next to the horizon, where W pdf / cos theta_o would grow without bound.
+// f_r of a self-contained BSDF stays what it is next to the horizon, where W pdf / cos theta_o would grow without
+// bound.
 TEST_P(BsdfOn, SelfContainedValuesAtTheHorizon) {
   static const BsdfData data = fit_compact(*gallery_table("specular")).best().data;
   const Bsdf bsdf(data);
@@ -297,7 +304,8 @@ TEST(Bsdf, SaysWhatItHolds) {
     EXPECT_EQ(c.bsdf.incident_angles(), c.plain.stack().theta_i().size());
     EXPECT_GT(c.bsdf.bytes(), c.plain.stack().bytes() / 2);
   }
-  EXPECT_GT(cases()[1].bsdf.bytes(), 4 * 32 * 16 + 1024 * sizeof(int));  // four angles, 8 x 4 cells, four floats; the guide
+  EXPECT_GT(cases()[1].bsdf.bytes(),
+            4 * 32 * 16 + 1024 * sizeof(int));  // four angles, 8 x 4 cells, four floats; the guide
 }
 
 TEST(Bsdf, RefusesWhatItCannotHold) {
@@ -306,7 +314,8 @@ TEST(Bsdf, RefusesWhatItCannotHold) {
   const Colour colour({0.0f}, 2, {{1, 2, 3}, {4, 5, 6}});
   EXPECT_THROW(Bsdf({grid, Interpolation::mixture, Storage::float32, colour}), Error);
   EXPECT_THROW(Bsdf({grid, Interpolation::mixture, Storage::float32, {}}, table), Error);
-  for (const Interpolation interpolation : {Interpolation::nearest, Interpolation::mixture, Interpolation::displacement}) {
+  for (const Interpolation interpolation :
+       {Interpolation::nearest, Interpolation::mixture, Interpolation::displacement}) {
     EXPECT_THROW(Bsdf({grid, interpolation, Storage::packed16, colour}), Error);
     EXPECT_THROW(StackBsdf({grid, interpolation, Storage::packed16, colour}), Error);
   }
@@ -338,14 +347,16 @@ TEST(StackBsdf, SubjectsDirectionIsThatOfTheSample) {
 // ---------------------------------------------------------------- as make_bsdf() makes it
 
 // A glossy lobe about the mirror direction over a coloured floor, as a grid.
-BrdfTable make_table(const std::function<glm::vec3(double theta_i, double theta_o, double phi)>& f, int n_theta = 45, int n_phi = 45) {
+BrdfTable make_table(const std::function<glm::vec3(double theta_i, double theta_o, double phi)>& f, int n_theta = 45,
+                     int n_phi = 45) {
   MbsdfFile file;
   file.n_theta_in = file.n_theta_out = n_theta;
   file.n_phi = n_phi;
   for (int i = 0; i < n_theta; ++i)
     for (int o = 0; o < n_theta; ++o)
       for (int p = 0; p < n_phi; ++p) {
-        const glm::vec3 v = f((i + 0.5) * pi<double> / 2 / n_theta, (o + 0.5) * pi<double> / 2 / n_theta, (p + 0.5) * pi<double> / n_phi);
+        const glm::vec3 v = f((i + 0.5) * pi<double> / 2 / n_theta, (o + 0.5) * pi<double> / 2 / n_theta,
+                              (p + 0.5) * pi<double> / n_phi);
         file.values.insert(file.values.end(), {v.r, v.g, v.b});
       }
   return BrdfTable(MbsdfTable(file), {"made", "made", "mbsdf", "", file.values.size() * 4, {}});
@@ -541,7 +552,8 @@ TEST(Bsdf, RealMaterials) {
 // ---------------------------------------------------------------- albedo and roughness
 
 std::shared_ptr<const BrdfTable> synthetic(const char* description) {
-  return std::make_shared<const BrdfTable>(MbsdfTable(synthesize_mbsdf(parse_model(description), 32, 48)), BrdfTable::Info{});
+  return std::make_shared<const BrdfTable>(MbsdfTable(synthesize_mbsdf(parse_model(description), 32, 48)),
+                                           BrdfTable::Info{});
 }
 
 Bsdf bsdf_of(const char* description) {

@@ -1,9 +1,8 @@
-#include <gonio/brdf/build/stack/build_stack.h>
+#include <string>
 
 #include <gtest/gtest.h>
 
-#include <string>
-
+#include <gonio/brdf/build/stack/build_stack.h>
 #include <gonio/brdf/proof/gallery.h>
 #include <gonio/mapping/base/error.h>
 

@@ -1,12 +1,11 @@
-#include <gonio/brdf/proof/statistics/chi_square.h>
-
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
+#include <gtest/gtest.h>
+
+#include <gonio/brdf/proof/statistics/chi_square.h>
 #include <gonio/brdf/proof/statistics/random.h>
 #include <gonio/mapping/base/error.h>
 #include <gonio/mapping/charts/hemisphere.h>
@@ -81,7 +80,8 @@ TEST(ChiSquare, NegativeControls) {
   Random random(1);
   const Draw draw = [&](std::uint64_t) { return draw_cosine(random); };
   // A pdf that tilts by a few per cent.
-  const auto tilted = chi_square(draw, [](const glm::vec3& w) { return cosine(w) * (1 + 0.03 * w.x); }, bins(), draws);
+  const auto tilted = chi_square(
+      draw, [](const glm::vec3& w) { return cosine(w) * (1 + 0.03 * w.x); }, bins(), draws);
   EXPECT_FALSE(tilted.passed(0.01)) << tilted.summary();
   // Half a texel aside: directions turned by 0.4 degrees towards +x.
   const auto shifted = chi_square(
@@ -94,18 +94,21 @@ TEST(ChiSquare, NegativeControls) {
       cosine, bins(), draws);
   EXPECT_FALSE(shifted.passed(0.01)) << shifted.summary();
   // A pdf that is 0 where draws fall.
-  const auto hole = chi_square(draw, [](const glm::vec3& w) { return w.x > 0.9f ? 0 : cosine(w); }, bins(), draws);
+  const auto hole = chi_square(
+      draw, [](const glm::vec3& w) { return w.x > 0.9f ? 0 : cosine(w); }, bins(), draws);
   EXPECT_FALSE(hole.passed(0.01)) << hole.summary();
   EXPECT_GT(hole.where_zero, 0u);
   // Draws below the horizon.
-  const auto below = chi_square([&](std::uint64_t k) { return k % 1000 ? draw_cosine(random) : glm::vec3(0, 0, -1); }, cosine, bins(), draws);
+  const auto below = chi_square([&](std::uint64_t k) { return k % 1000 ? draw_cosine(random) : glm::vec3(0, 0, -1); },
+                                cosine, bins(), draws);
   EXPECT_FALSE(below.passed(0.01));
   EXPECT_EQ(below.outside, draws / 1000);
 }
 
 TEST(ChiSquare, ScaleIsSeenInTheIntegral) {  // the shape alone would pass
   Random random(1);
-  const auto result = chi_square([&](std::uint64_t) { return draw_cosine(random); }, [](const glm::vec3& w) { return 1.01 * cosine(w); }, bins(), 100000);
+  const auto result = chi_square([&](std::uint64_t) { return draw_cosine(random); },
+                                 [](const glm::vec3& w) { return 1.01 * cosine(w); }, bins(), 100000);
   EXPECT_NEAR(result.pdf_integral, 1.01, 1e-5);
 }
 
@@ -118,7 +121,8 @@ TEST(ChiSquare, NarrowPeakIsCutIntoManyCells) {
   int inside = 0;
   for (std::size_t i = 0; i + 1 < b.phi().size(); ++i)
     for (std::size_t j = 0; j + 1 < b.r().size(); ++j) {
-      const auto w = polar_to_direction(Polar<double>{(b.r()[j] + b.r()[j + 1]) / 2, (b.phi()[i] + b.phi()[i + 1]) / 2});
+      const auto w =
+          polar_to_direction(Polar<double>{(b.r()[j] + b.r()[j + 1]) / 2, (b.phi()[i] + b.phi()[i + 1]) / 2});
       inside += std::hypot(w.x + 0.5, w.y) < 0.01;
     }
   EXPECT_GT(inside, 25);

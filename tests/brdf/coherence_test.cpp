@@ -1,15 +1,14 @@
-#include <gonio/brdf/proof/coherence.h>
-
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <memory>
 #include <set>
 
+#include <gtest/gtest.h>
+
 #include <gonio/brdf/build/stack/build_stack.h>
+#include <gonio/brdf/proof/coherence.h>
 #include <gonio/brdf/proof/gallery.h>
-#include <gonio/brdf/proof/statistics/random.h>
 #include <gonio/brdf/proof/samplers/stack_bsdf.h>
+#include <gonio/brdf/proof/statistics/random.h>
 
 namespace gonio::proof {
 namespace {
@@ -38,7 +37,9 @@ const StackGrid& coarse_grid() {
   return grid;
 }
 
-StackBsdf coarse(Interpolation interpolation) { return StackBsdf({coarse_grid(), interpolation, Storage::float32, {}}, shared_table()); }
+StackBsdf coarse(Interpolation interpolation) {
+  return StackBsdf({coarse_grid(), interpolation, Storage::float32, {}}, shared_table());
+}
 
 constexpr double theta_i = 0.65;  // half way between two of the seven
 
@@ -90,7 +91,8 @@ TEST(Coherence, CountsTearsAndFolds) {
 TEST(Coherence, OnlyAMixtureIsTorn) {
   const StackBsdf displacement = coarse(Interpolation::displacement);
   const StackBsdf mixture = coarse(Interpolation::mixture);
-  const Coherence d = measure_coherence(subject_of(displacement), theta_i), m = measure_coherence(subject_of(mixture), theta_i);
+  const Coherence d = measure_coherence(subject_of(displacement), theta_i),
+                  m = measure_coherence(subject_of(mixture), theta_i);
   EXPECT_EQ(d.tears, 0u);
   EXPECT_EQ(d.folds, 0u);
   EXPECT_GT(m.tears, 50u);
@@ -128,11 +130,16 @@ TEST(Coherence, RandomMixtureAndRejectionLoseTheSlope) {
   const StackBsdf displacement = coarse(Interpolation::displacement);
   double peak = 0;
   for (int n = 0; n < 20000; ++n)
-    peak = std::max<double>(peak, displacement.sample({std::sin(static_cast<float>(theta_i)), 0, std::cos(static_cast<float>(theta_i))}, random.pair())->pdf);
+    peak = std::max<double>(
+        peak,
+        displacement
+            .sample({std::sin(static_cast<float>(theta_i)), 0, std::cos(static_cast<float>(theta_i))}, random.pair())
+            ->pdf);
   Subject rejection = subject_of(displacement);
   rejection.sample = [&](const glm::vec3& wi, const glm::vec2& u) -> std::optional<BsdfSample> {
     for (glm::vec2 at = u;; at = random.pair()) {
-      const glm::vec3 w = polar_to_direction(Polar<float>{std::sqrt(at.x) * (1 - 0x1p-23f), 2 * pi<float> * (at.y - 0.5f)});
+      const glm::vec3 w =
+          polar_to_direction(Polar<float>{std::sqrt(at.x) * (1 - 0x1p-23f), 2 * pi<float> * (at.y - 0.5f)});
       const float pdf = displacement.pdf(wi, w);
       if (random() * 1.05 * peak < pdf) return BsdfSample{w, pdf, specular_table().eval(wi, w) * (w.z / pdf)};
     }

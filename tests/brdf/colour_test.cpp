@@ -1,9 +1,8 @@
-#include <gonio/brdf/value/colour.h>
+#include <vector>
 
 #include <gtest/gtest.h>
 
-#include <vector>
-
+#include <gonio/brdf/value/colour.h>
 #include <gonio/mapping/base/error.h>
 
 namespace gonio {

@@ -1,17 +1,16 @@
-#include <gonio/brdf/build/stack/build_stack.h>
-#include <gonio/brdf/build/compact/colour_of_table.h>
-#include <gonio/brdf/proof/gallery.h>
-#include <gonio/brdf/proof/samplers/stack_bsdf.h>
-#include <gonio/brdf/bsdf/bsdf.h>
-
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <memory>
 #include <numeric>
 #include <thread>
 #include <vector>
 
+#include <gtest/gtest.h>
+
+#include <gonio/brdf/bsdf/bsdf.h>
+#include <gonio/brdf/build/compact/colour_of_table.h>
+#include <gonio/brdf/build/stack/build_stack.h>
+#include <gonio/brdf/proof/gallery.h>
+#include <gonio/brdf/proof/samplers/stack_bsdf.h>
 #include <gonio/brdf/proof/statistics/random.h>
 #include <gonio/mapping/stack/packed_stack.h>
 
@@ -50,7 +49,8 @@ double use(const Bsdf& bsdf) {
   std::vector<float> in(5 * count), out(7 * count), back(4 * count);
   for (std::size_t k = 0; k < count; ++k) {
     const float theta = 1.5f * random();
-    in[k] = std::sin(theta), in[2 * count + k] = std::cos(theta), in[3 * count + k] = random(), in[4 * count + k] = random();
+    in[k] = std::sin(theta), in[2 * count + k] = std::cos(theta), in[3 * count + k] = random(),
+    in[4 * count + k] = random();
   }
   const auto arrays = [](std::vector<float>& values, std::size_t first) {
     float* const x = values.data() + first * count;

@@ -1,10 +1,10 @@
-#include <gonio/brdf/ndf/image/disk_image_file.h>
-#include <gonio/brdf/exr/stack_file.h>
-#include <gonio/mapping/base/error.h>
-#include <gtest/gtest.h>
-
 #include <ImfArray.h>
 #include <ImfRgbaFile.h>
+#include <gtest/gtest.h>
+
+#include <gonio/brdf/exr/stack_file.h>
+#include <gonio/brdf/ndf/image/disk_image_file.h>
+#include <gonio/mapping/base/error.h>
 
 #include "tests/support/ndf_cases.h"
 #include "tests/support/table_files.h"
@@ -28,8 +28,7 @@ void write_rgba(const std::filesystem::path& path, int width, int height) {
   Imf::Header header(Imath::Box2i({0, 0}, {99, 99}), Imath::Box2i({10, 20}, {10 + width - 1, 20 + height - 1}));
   Imf::Array2D<Imf::Rgba> pixels(height, width);
   for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x)
-      pixels[y][x] = Imf::Rgba(static_cast<float>(x), static_cast<float>(y), 2.0f, 1.0f);
+    for (int x = 0; x < width; ++x) pixels[y][x] = Imf::Rgba(static_cast<float>(x), static_cast<float>(y), 2.0f, 1.0f);
   Imf::RgbaOutputFile file(path.c_str(), header, Imf::WRITE_RGBA);
   file.setFrameBuffer(&pixels[0][0] - 10 - 20 * width, 1, static_cast<std::size_t>(width));
   file.writePixels(height);

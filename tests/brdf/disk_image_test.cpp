@@ -1,8 +1,9 @@
-#include <gonio/brdf/ndf/image/disk_image.h>
-#include <gonio/mapping/base/error.h>
+#include <limits>
+
 #include <gtest/gtest.h>
 
-#include <limits>
+#include <gonio/brdf/ndf/image/disk_image.h>
+#include <gonio/mapping/base/error.h>
 
 #include "tests/support/ndf_cases.h"
 

@@ -1,9 +1,5 @@
 // The sides of the unit square, where random numbers hardly come: see brdf/proof/edges.h.
 
-#include <gonio/brdf/proof/edges.h>
-
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -12,14 +8,18 @@
 #include <regex>
 #include <vector>
 
-#include <gonio/brdf/proof/samplers/baseline.h>
+#include <gtest/gtest.h>
+
 #include <gonio/brdf/build/compact/fit_compact.h>
+#include <gonio/brdf/proof/edges.h>
 #include <gonio/brdf/proof/gallery.h>
+#include <gonio/brdf/proof/samplers/baseline.h>
 #include <gonio/fitting/fit/fit.h>
-#include <gonio/fitting/sampling/lobe_sampler.h>
 #include <gonio/fitting/model/model.h>
+#include <gonio/fitting/sampling/lobe_sampler.h>
 #include <gonio/mapping/light/emission.h>
 #include <gonio/mapping/light/exr/light_exr.h>
+
 #include "tests/support/batch_subject.h"
 
 namespace gonio::proof {
@@ -41,7 +41,8 @@ void expect_sound(const std::string& what, const Subject& subject, double theta_
 }
 
 /// Everything that a table is sampled by.
-void expect_all_sound(const std::string& name, const std::shared_ptr<const BrdfTable>& from, const std::vector<double>& angles) {
+void expect_all_sound(const std::string& name, const std::shared_ptr<const BrdfTable>& from,
+                      const std::vector<double>& angles) {
   const CompactFit fit = fit_compact(*from).best();
   BsdfData in_floats = fit.data;
   in_floats.storage = Storage::float32;
@@ -89,13 +90,18 @@ TEST_P(MeasuredEdges, AreSound) {
   expect_all_sound(GetParam(), std::make_shared<const BrdfTable>(load_table(path)), angles);
 }
 INSTANTIATE_TEST_SUITE_P(Slow, MeasuredEdges,
-                         testing::Values("rgl/paper_white_rgb.bsdf", "rgl/satin_rosaline_rgb.bsdf", "rgl/cc_iris_purple_gem_rgb.bsdf",
-                                         "rgl/cg_sunflower_rgb.bsdf", "rgl_more/aurora_white_rgb.bsdf", "rgl_more/cc_green_malachite_rgb.bsdf",
-                                         "rgl_more/chm_orange_rgb.bsdf", "rgl_more/ilm_solo_m_68_rgb.bsdf", "rgl_more/irid_flake_paint1_rgb.bsdf",
-                                         "rgl_more/vch_silk_blue_rgb.bsdf", "mbsdf/carpaint_blue.mbsdf", "mbsdf/carpaint_red.mbsdf",
-                                         "merl/chrome.binary", "merl/blue-acrylic.binary", "merl/gold-metallic-paint.binary",
+                         testing::Values("rgl/paper_white_rgb.bsdf", "rgl/satin_rosaline_rgb.bsdf",
+                                         "rgl/cc_iris_purple_gem_rgb.bsdf", "rgl/cg_sunflower_rgb.bsdf",
+                                         "rgl_more/aurora_white_rgb.bsdf", "rgl_more/cc_green_malachite_rgb.bsdf",
+                                         "rgl_more/chm_orange_rgb.bsdf", "rgl_more/ilm_solo_m_68_rgb.bsdf",
+                                         "rgl_more/irid_flake_paint1_rgb.bsdf", "rgl_more/vch_silk_blue_rgb.bsdf",
+                                         "mbsdf/carpaint_blue.mbsdf", "mbsdf/carpaint_red.mbsdf", "merl/chrome.binary",
+                                         "merl/blue-acrylic.binary", "merl/gold-metallic-paint.binary",
                                          "merl/yellow-matte-plastic.binary"),
-                         [](const auto& entry) { return std::regex_replace(std::filesystem::path(entry.param).stem().string(), std::regex("-"), "_"); });
+                         [](const auto& entry) {
+                           return std::regex_replace(std::filesystem::path(entry.param).stem().string(),
+                                                     std::regex("-"), "_");
+                         });
 
 /// @returns the draws without a direction.
 std::uint64_t expect_emission_sound(const std::string& what, const LightDiagram& diagram) {
@@ -138,10 +144,15 @@ TEST(SlowEdges, MeasuredLuminaires) {
   if (!data) GTEST_SKIP() << "GONIO_TEST_DATA is not set";
   int sampled = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(std::filesystem::path(data) / "photometric")) {
-    if (!entry.is_regular_file() || entry.path().filename() == "test_file_format_error.ies" || !is_light_file(entry.path())) continue;
+    if (!entry.is_regular_file() || entry.path().filename() == "test_file_format_error.ies" ||
+        !is_light_file(entry.path()))
+      continue;
     Problems ignored;
     // Draws on the very side of a plane without light are empty.
-    EXPECT_LE(expect_emission_sound(entry.path().filename().string(), load_any_light(entry.path(), {}, ignored).diagram), 100u) << entry.path();
+    EXPECT_LE(
+        expect_emission_sound(entry.path().filename().string(), load_any_light(entry.path(), {}, ignored).diagram),
+        100u)
+        << entry.path();
     ++sampled;
   }
   EXPECT_GE(sampled, 40);
@@ -172,7 +183,9 @@ TEST(Edges, DirectionsWithoutDensityAreFound) {
   const CosineSampler right(table("lambert"));
   EXPECT_NEAR(scan_directions(subject_of(right), 0.5).largest_weight, 1, 1e-3);
   Subject subject = subject_of(right);
-  subject.pdf = [&](const glm::vec3& wi, const glm::vec3& wo) { return wo.z < 0x1p-10f ? 1e-3 * right.pdf(wi, wo) : right.pdf(wi, wo); };
+  subject.pdf = [&](const glm::vec3& wi, const glm::vec3& wo) {
+    return wo.z < 0x1p-10f ? 1e-3 * right.pdf(wi, wo) : right.pdf(wi, wo);
+  };
   EXPECT_NEAR(scan_directions(subject, 0.5).largest_weight, 1000, 1);
   subject.pdf = [&](const glm::vec3& wi, const glm::vec3& wo) { return wo.x > 0 ? 0 : right.pdf(wi, wo); };
   EXPECT_NEAR(scan_directions(subject, 0.5).without_pdf, 0.5, 0.01);
@@ -184,10 +197,23 @@ TEST(Edges, HostileFloats) {
   const BsdfData data = fit_compact(*from).best().data;
   const Bsdf bsdf(data, from), compact(data);
   const StackBsdf plain(data, from), plain_compact(data);
-  const Subject subjects[] = {subject_of(plain), subject_of(plain_compact), subject_of(bsdf), batch_subject(bsdf), subject_of(compact), batch_subject(compact)};
+  const Subject subjects[] = {subject_of(plain),   subject_of(plain_compact), subject_of(bsdf),
+                              batch_subject(bsdf), subject_of(compact),       batch_subject(compact)};
   using Limits = std::numeric_limits<float>;
-  const float hostile[] = {Limits::quiet_NaN(), Limits::infinity(), -Limits::infinity(), Limits::max(), -Limits::max(),
-                           Limits::denorm_min(), -Limits::denorm_min(), Limits::min(), 0.0f, -0.0f, -1.0f, 2.0f, 1e-30f, 1e30f};
+  const float hostile[] = {Limits::quiet_NaN(),
+                           Limits::infinity(),
+                           -Limits::infinity(),
+                           Limits::max(),
+                           -Limits::max(),
+                           Limits::denorm_min(),
+                           -Limits::denorm_min(),
+                           Limits::min(),
+                           0.0f,
+                           -0.0f,
+                           -1.0f,
+                           2.0f,
+                           1e-30f,
+                           1e30f};
   for (const Subject& subject : subjects) {
     for (int first = 0; first < 6; ++first)
       for (int second = first; second < 6; ++second)
@@ -199,7 +225,8 @@ TEST(Edges, HostileFloats) {
             const double pdf = subject.pdf(wi, wo);
             const glm::vec3 f_r = subject.f_r(wi, wo);
             ASSERT_TRUE(pdf >= 0 && std::isfinite(pdf)) << first << ' ' << a << ' ' << second << ' ' << b;
-            ASSERT_TRUE(f_r.x >= 0 && std::isfinite(f_r.x + f_r.y + f_r.z)) << first << ' ' << a << ' ' << second << ' ' << b;
+            ASSERT_TRUE(f_r.x >= 0 && std::isfinite(f_r.x + f_r.y + f_r.z))
+                << first << ' ' << a << ' ' << second << ' ' << b;
             const auto s = subject.sample(wi, {x[3], x[4]});
             const bool sound = !s || (s->pdf > 0 && std::isfinite(s->wo.x + s->wo.y + s->wo.z + s->weight.x));
             ASSERT_TRUE(sound) << first << ' ' << a << ' ' << second << ' ' << b;

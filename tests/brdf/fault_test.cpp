@@ -1,8 +1,4 @@
-#include <gonio/brdf/exr/stack_file.h>
-#include <gonio/brdf/proof/gallery.h>
-#include <gonio/brdf/resample/table_resample.h>
-#include <gonio/mapping/base/error.h>
-#include <gonio/mapping/stack/packed_stack.h>
+#include <functional>
 
 #include <fenv.h>
 #include <gtest/gtest.h>
@@ -12,9 +8,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <functional>
-
+#include <gonio/brdf/exr/stack_file.h>
+#include <gonio/brdf/proof/gallery.h>
 #include <gonio/brdf/proof/statistics/random.h>
+#include <gonio/brdf/resample/table_resample.h>
+#include <gonio/mapping/base/error.h>
+#include <gonio/mapping/stack/packed_stack.h>
+
 #include "tests/support/table_files.h"
 
 namespace gonio {
@@ -116,7 +116,8 @@ TEST(Fault, ReadOnlyFolder) {
     const TemporaryFolder folder;
     chmod(folder.path().c_str(), 0555);
     EXPECT_EQ(in_child([&] {
-                if (geteuid() == 0 && (setegid(65534) != 0 || seteuid(65534) != 0)) return 4;  // root may write anywhere
+                if (geteuid() == 0 && (setegid(65534) != 0 || seteuid(65534) != 0))
+                  return 4;  // root may write anywhere
                 return writing_fails(writer, folder / writer.name);
               }),
               0)

@@ -1,16 +1,17 @@
-#include <gonio/brdf/build/compact/fit_compact.h>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include <gtest/gtest.h>
+
 #include <gonio/brdf/bsdf/bsdf.h>
+#include <gonio/brdf/build/compact/fit_compact.h>
 #include <gonio/brdf/proof/measure.h>
 #include <gonio/fitting/model/synth.h>
 #include <gonio/mapping/base/error.h>
 #include <gonio/mapping/stack/packed_stack.h>
+
 #include "tests/support/table_files.h"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <memory>
 
 namespace gonio {
 namespace {
@@ -80,7 +81,8 @@ TEST(FitCompact, SaysWhatItMissed) {
 /// What it reports of its progress.
 std::vector<double> progress_of(const BsdfOptions& options) {
   std::vector<double> reported{0};
-  fit_compact(*synthetic("ggx+lambert:alpha=0.3,F0=0.3,albedo=0.3/0.2/0.1", 12, 16), options, [&](double share) { reported.push_back(share); });
+  fit_compact(*synthetic("ggx+lambert:alpha=0.3,F0=0.3,albedo=0.3/0.2/0.1", 12, 16), options,
+              [&](double share) { reported.push_back(share); });
   return reported;
 }
 
@@ -120,8 +122,8 @@ TEST(FitCompact, NearMirrorNeedsAnglesNearTheNormal) {
   options.max_variance = 0.05;
   options.budget = 4 << 20;
   options.chart = Chart::outgoing;
-  const auto table = std::make_shared<const BrdfTable>(
-      BrdfTable(MerlTable(synthesize_merl(parse_model("ggx:alpha=0.06,F0=0.9")), {}), {"made", "made", "merl", "", 0, {}}));
+  const auto table = std::make_shared<const BrdfTable>(BrdfTable(
+      MerlTable(synthesize_merl(parse_model("ggx:alpha=0.06,F0=0.9")), {}), {"made", "made", "merl", "", 0, {}}));
   const CompactFit fit = fit_compact(*table, options).best();
   std::size_t low = 0, middle = 0;
   for (const double theta : fit.data.diagrams.theta_i) {
@@ -152,7 +154,8 @@ TEST(CompactCurve, BytesGoWhereTheMaterialIsSeen) {
     return static_cast<double>(low) / static_cast<double>(all);
   };
   const std::vector<double> variances{0.01, 0.001};
-  EXPECT_LT(share_below_45(compact_curve(*glossy(), variances, grazing)), share_below_45(compact_curve(*glossy(), variances)));
+  EXPECT_LT(share_below_45(compact_curve(*glossy(), variances, grazing)),
+            share_below_45(compact_curve(*glossy(), variances)));
 }
 
 // More bytes never make it much worse: the search goes both ways, to fewer lines at more angles and back.

@@ -1,15 +1,14 @@
-#include <gonio/brdf/build/budget/incidence_profile.h>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <thread>
 
-#include <gonio/mapping/charts/concentric.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <gonio/brdf/build/budget/incidence_profile.h>
 #include <gonio/mapping/base/error.h>
+#include <gonio/mapping/charts/concentric.h>
 
 namespace gonio {
 namespace {

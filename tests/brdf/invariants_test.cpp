@@ -1,7 +1,3 @@
-#include <gonio/brdf/proof/gtest.h>
-
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -13,10 +9,13 @@
 #include <string>
 #include <vector>
 
-#include <gonio/brdf/proof/samplers/baseline.h>
-#include <gonio/brdf/proof/gallery.h>
-#include <gonio/brdf/build/stack/build_stack.h>
+#include <gtest/gtest.h>
+
 #include <gonio/brdf/build/compact/fit_compact.h>
+#include <gonio/brdf/build/stack/build_stack.h>
+#include <gonio/brdf/proof/gallery.h>
+#include <gonio/brdf/proof/gtest.h>
+#include <gonio/brdf/proof/samplers/baseline.h>
 
 namespace gonio::proof {
 namespace {
@@ -41,16 +40,12 @@ struct Method {
   Interpolation interpolation;
   bool packed = false;
 };
-constexpr Method methods[] = {{Chart::outgoing, Interpolation::nearest},
-                              {Chart::outgoing, Interpolation::mixture},
-                              {Chart::outgoing, Interpolation::displacement},
-                              {Chart::outgoing, Interpolation::blend},
-                              {Chart::half, Interpolation::nearest},
-                              {Chart::half, Interpolation::mixture},
-                              {Chart::half, Interpolation::displacement},
-                              {Chart::half, Interpolation::blend},
-                              {Chart::outgoing, Interpolation::blend, true},
-                              {Chart::half, Interpolation::blend, true}};
+constexpr Method methods[] = {
+    {Chart::outgoing, Interpolation::nearest},      {Chart::outgoing, Interpolation::mixture},
+    {Chart::outgoing, Interpolation::displacement}, {Chart::outgoing, Interpolation::blend},
+    {Chart::half, Interpolation::nearest},          {Chart::half, Interpolation::mixture},
+    {Chart::half, Interpolation::displacement},     {Chart::half, Interpolation::blend},
+    {Chart::outgoing, Interpolation::blend, true},  {Chart::half, Interpolation::blend, true}};
 
 std::string name_of(const Method& m) {
   return std::string(m.packed ? "packed " : "") + to_string(m.interpolation) + "/" + to_string(m.chart);
@@ -61,10 +56,12 @@ InvariantOptions options_for(const Method& method) {
   options.runs = runs;
   options.draws = draws;
   options.points = 1000;
-  if (method.chart == Chart::half) options.direction_bound = 1e-3;                    // see Stack::invert()
-  if (method.interpolation == Interpolation::mixture) options.direction_bound = method.chart == Chart::half ? 5e-2 : 1e-2;
+  if (method.chart == Chart::half) options.direction_bound = 1e-3;  // see Stack::invert()
+  if (method.interpolation == Interpolation::mixture)
+    options.direction_bound = method.chart == Chart::half ? 5e-2 : 1e-2;
   options.one_to_one = method.interpolation != Interpolation::mixture;
-  options.continuous = method.interpolation == Interpolation::displacement || method.interpolation == Interpolation::blend;
+  options.continuous =
+      method.interpolation == Interpolation::displacement || method.interpolation == Interpolation::blend;
   return options;
 }
 
@@ -107,7 +104,8 @@ class GalleryRun {
     bool found = false;
     for (std::size_t k = 0; k < std::size(known); ++k) {
       const Known& e = known[k];
-      const bool here = e.where == Known::anywhere || (method.chart == Chart::half && (e.where == Known::half_chart || theta_i > 1.5));
+      const bool here = e.where == Known::anywhere ||
+                        (method.chart == Chart::half && (e.where == Known::half_chart || theta_i > 1.5));
       if (!here || !(e.entry.empty() || e.entry == entry_) || !e.checks.count(check)) continue;
       failed_[k].insert(check);
       found = true;
@@ -159,7 +157,8 @@ TEST_P(TableGallery, InvariantsHold) {
     small.meridians = small.parallels = 16;
     small.chart = method.chart;
     // The other two interpolations take what is built for displacement.
-    small.interpolation = method.interpolation == Interpolation::blend ? Interpolation::blend : Interpolation::displacement;
+    small.interpolation =
+        method.interpolation == Interpolation::blend ? Interpolation::blend : Interpolation::displacement;
     const StackGrid grid = build_stack(*table, small);
     const StackBsdf bsdf({grid, method.interpolation, Storage::float32, {}}, table);
     const auto packed = method.packed ? std::make_optional<PackedStack>(grid) : std::nullopt;

@@ -1,8 +1,9 @@
 #include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include <gonio/brdf/formats/mbsdf.h>
 #include <gonio/brdf/table/table.h>
 #include <gonio/mapping/base/error.h>
-#include <gtest/gtest.h>
 
 #include "tests/support/table_files.h"
 
@@ -19,8 +20,7 @@ MbsdfFile make_grid(int n_in, int n_out, int n_phi, int channels = 3) {
     for (int o = 0; o < n_out; ++o) {
       for (int p = 0; p < n_phi; ++p) {
         for (int c = 0; c < channels; ++c) {
-          file.values.push_back(static_cast<float>(100 * i + 10 * o + p) +
-                                0.1f * static_cast<float>(c));
+          file.values.push_back(static_cast<float>(100 * i + 10 * o + p) + 0.1f * static_cast<float>(c));
         }
       }
     }
@@ -52,8 +52,8 @@ TEST(Grid, HoldsItsValuesAtCellCentres) {
         const double phi = (p + 0.5) * pi / 4;
         for (const double sign : {1.0, -1.0}) {
           for (const double turn : {0.0, 2.0, 3.1}) {
-            const glm::vec3 f_r = table.eval(direction((i + 0.5) * pi / 6, turn),
-                                             direction((o + 0.5) * pi / 10, turn + sign * phi));
+            const glm::vec3 f_r =
+                table.eval(direction((i + 0.5) * pi / 6, turn), direction((o + 0.5) * pi / 10, turn + sign * phi));
             EXPECT_NEAR(f_r.r, 100 * i + 10 * o + p, 1e-3);
             EXPECT_NEAR(f_r.b, 100 * i + 10 * o + p + 0.2, 1e-3);
           }
@@ -82,7 +82,9 @@ TEST(Grid, AtTheNormalAzimuthsAreThoseFromX) {
   const MbsdfTable table(make_grid(3, 3, 4));
   EXPECT_TRUE(std::isfinite(table.eval({0, 0, 1}, {0, 0, 1}).r));
   for (const double phi : {0.0, 1.0, 2.0, 3.0})
-    EXPECT_NEAR(table.eval({0, 0, 1}, direction(1.0, phi)).r, table.eval(direction(1e-5, 0.0), direction(1.0, phi)).r, 1e-4) << phi;
+    EXPECT_NEAR(table.eval({0, 0, 1}, direction(1.0, phi)).r, table.eval(direction(1e-5, 0.0), direction(1.0, phi)).r,
+                1e-4)
+        << phi;
   EXPECT_NE(table.eval({0, 0, 1}, direction(1.0, 0.0)).r, table.eval({0, 0, 1}, direction(1.0, 3.0)).r);
 }
 
@@ -140,8 +142,7 @@ TEST(Grid, RoundTrip) {
 
 TEST(Grid, PartsOfAFile) {
   const std::vector<float> a(12, 1.0f), b(12, 2.0f);
-  const std::string both =
-      make_mbsdf(0, 2, 3, a, "MBSDF_DATA_TRANSMISSION=\n") + make_mbsdf(0, 2, 3, b).substr(20);
+  const std::string both = make_mbsdf(0, 2, 3, a, "MBSDF_DATA_TRANSMISSION=\n") + make_mbsdf(0, 2, 3, b).substr(20);
   std::vector<Problem> problems;
   const MbsdfFile file = parse(both, problems);
   EXPECT_EQ(file.values, b);
@@ -149,8 +150,7 @@ TEST(Grid, PartsOfAFile) {
   ASSERT_EQ(problems.size(), 1u);
   EXPECT_EQ(problems[0].field, "transmission");
   EXPECT_EQ(message(make_mbsdf(0, 2, 3, a, "maker=someone\nMBSDF_DATA=\n")), "no error");
-  EXPECT_THAT(message(make_mbsdf(0, 2, 3, a, "MBSDF_DATA_TRANSMISSION=\n")),
-              HasSubstr("transmission alone"));
+  EXPECT_THAT(message(make_mbsdf(0, 2, 3, a, "MBSDF_DATA_TRANSMISSION=\n")), HasSubstr("transmission alone"));
   EXPECT_THAT(message("NVIDIA ARC MBSDF V1\n"), HasSubstr("reflection: found none"));
   EXPECT_THAT(message(make_mbsdf(0, 2, 3, a) + make_mbsdf(0, 2, 3, a).substr(20)),
               HasSubstr("reflection: found a second part"));
@@ -159,8 +159,7 @@ TEST(Grid, PartsOfAFile) {
 TEST(Grid, DamagedFilesAreNamed) {
   const std::vector<float> values(12, 1.0f);
   EXPECT_THAT(message(make_mbsdf(2, 2, 3, values)), HasSubstr("reflection type: found 2"));
-  EXPECT_THAT(message(make_mbsdf(1, 2, 3, values)),
-              HasSubstr("reflection values: found 48 bytes, expected 144"));
+  EXPECT_THAT(message(make_mbsdf(1, 2, 3, values)), HasSubstr("reflection values: found 48 bytes, expected 144"));
   EXPECT_THAT(message(make_mbsdf(0, 0, 3, values)), HasSubstr("reflection n_theta: found 0"));
   EXPECT_THAT(message(make_mbsdf(0, 0xffffffffu, 0xffffffffu, values)),
               HasSubstr("reflection n_phi: found 4294967295"));

@@ -1,12 +1,12 @@
 #define GLM_ENABLE_EXPERIMENTAL  // glm/gtx, for rotations
-#include <gmock/gmock.h>
-#include <gonio/brdf/table/albedo.h>
-#include <gonio/brdf/formats/merl.h>
-#include <gonio/mapping/base/error.h>
-#include <gtest/gtest.h>
-
 #include <glm/geometric.hpp>
 #include <glm/gtx/rotate_vector.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <gonio/brdf/formats/merl.h>
+#include <gonio/brdf/table/albedo.h>
+#include <gonio/mapping/base/error.h>
 
 #include "tests/support/table_files.h"
 
@@ -50,8 +50,7 @@ TEST(Merl, AnglesAreThoseOfRusinkiewicz) {
 }
 
 TEST(Merl, NamedPoints) {
-  const BrdfTable table =
-      table_of(make_merl([](int h, int d, int p) { return 1000.0 * h + d + 0.001 * p; }));
+  const BrdfTable table = table_of(make_merl([](int h, int d, int p) { return 1000.0 * h + d + 0.001 * p; }));
   // Cell centres of the sqrt-spaced theta_h: (40.5 / 90)^2 * 90 = 18.225 degrees.
   glm::vec3 wi, wo;
   directions_from_half_difference(18.225 * pi / 180, 30.5 * pi / 180, 120.5 * pi / 180, wi, wo);
@@ -59,13 +58,11 @@ TEST(Merl, NamedPoints) {
   // Both directions equal: theta_d = 0, theta_h = theta. Mirror pair: theta_h = 0, theta_d = theta.
   const double theta = 18.225 * pi / 180;
   EXPECT_NEAR(table.eval(direction(theta, 1.0), direction(theta, 1.0)).r, 40000.0, 1.0);
-  EXPECT_NEAR(table.eval(direction(40.5 * pi / 180, 1.0), direction(40.5 * pi / 180, 1.0 + pi)).r,
-              40.0, 0.5);
+  EXPECT_NEAR(table.eval(direction(40.5 * pi / 180, 1.0), direction(40.5 * pi / 180, 1.0 + pi)).r, 40.0, 0.5);
 }
 
 TEST(Merl, InterpolatesHalfWayBetweenCentres) {
-  const BrdfTable table =
-      table_of(make_merl([](int, int d, int) { return static_cast<double>(d); }));
+  const BrdfTable table = table_of(make_merl([](int, int d, int) { return static_cast<double>(d); }));
   const auto at = [&](double degrees) {
     return table.eval(direction(degrees * pi / 180, 0.0), direction(degrees * pi / 180, pi)).r;
   };
@@ -77,8 +74,7 @@ TEST(Merl, InterpolatesHalfWayBetweenCentres) {
 
 TEST(Merl, PhiDIsPeriodic) {
   const BrdfTable half = table_of(make_merl([](int, int, int p) { return p == 0 || p == 179; }));
-  const BrdfTable full =
-      table_of(make_merl([](int, int, int p) { return p == 0 || p == 359; }, 360));
+  const BrdfTable full = table_of(make_merl([](int, int, int p) { return p == 0 || p == 359; }, 360));
   const auto at = [](const BrdfTable& table, double phi_d) {
     glm::vec3 wi, wo;
     directions_from_half_difference(0.5, 0.4, phi_d * pi / 180, wi, wo);
@@ -111,20 +107,17 @@ TEST(Merl, IsotropicAndWith180BinsReciprocal) {
 
 TEST(Merl, AccurateForNearlyEqualDirections) {
   for (const double separation : {1e-2, 1e-3, 1e-4}) {
-    const HalfDifference angles =
-        half_difference(direction(0.7, 0.0), direction(0.7 + separation, 0.0));
+    const HalfDifference angles = half_difference(direction(0.7, 0.0), direction(0.7 + separation, 0.0));
     EXPECT_NEAR(angles.theta_d / (separation / 2), 1.0, 1e-6 / separation);
-    const HalfDifference mirror =
-        half_difference(direction(0.7, 0.0), direction(0.7 + separation, pi));
+    const HalfDifference mirror = half_difference(direction(0.7, 0.0), direction(0.7 + separation, pi));
     EXPECT_NEAR(mirror.theta_h / (separation / 2), 1.0, 1e-6 / separation);
   }
 }
 
 TEST(Merl, NothingLeaksAcrossTheHorizon) {
   for (const double outside : {-1.0, 0.0, 1e6}) {
-    const MerlTable table(
-        make_merl([&](int h, int d, int p) { return below_horizon(h, d, p) ? outside : 0.5 / pi; }),
-        {});
+    const MerlTable table(make_merl([&](int h, int d, int p) { return below_horizon(h, d, p) ? outside : 0.5 / pi; }),
+                          {});
     EXPECT_EQ(table.cells().missing, 0u);
     std::mt19937 engine(3);
     for (int i = 0; i < 20000; ++i) {
@@ -143,8 +136,7 @@ TEST(Merl, MissingCellsFollowThePolicy) {
   const MerlFile file = make_merl(value);
   const auto at = [&](const MerlTable& table, int d) {
     glm::vec3 wi, wo;
-    directions_from_half_difference(pi / 2 * std::pow(20.5 / 90, 2), (d + 0.5) * pi / 180,
-                                    90.5 * pi / 180, wi, wo);
+    directions_from_half_difference(pi / 2 * std::pow(20.5 / 90, 2), (d + 0.5) * pi / 180, 90.5 * pi / 180, wi, wo);
     return table.eval(wi, wo).b;
   };
   CellPolicies policies;
@@ -171,8 +163,7 @@ TEST(Merl, NonfiniteCellsAreFilledAndCounted) {
 TEST(Merl, RoundTripKeepsEveryByte) {
   const TemporaryFolder folder;
   for (const int n_phi_d : {180, 360}) {
-    MerlFile file =
-        make_merl([](int h, int d, int p) { return std::sin(h + d * p) * 1e3; }, n_phi_d);
+    MerlFile file = make_merl([](int h, int d, int p) { return std::sin(h + d * p) * 1e3; }, n_phi_d);
     file.values[5] = -std::numeric_limits<double>::quiet_NaN();
     file.values[6] = std::numeric_limits<double>::denorm_min();
     write_merl(folder / "a", file);
@@ -198,12 +189,10 @@ TEST(Merl, BadFilesAreNamed) {
   std::string header;
   for (const std::int32_t n : {90, 90, 180}) append(header, n);
   EXPECT_THAT(message(""), AllOf(HasSubstr("bad.binary: header"), HasSubstr("0 bytes")));
-  EXPECT_THAT(message(header),
-              AllOf(HasSubstr("file size: found 12 bytes"), HasSubstr("34992012")));
+  EXPECT_THAT(message(header), AllOf(HasSubstr("file size: found 12 bytes"), HasSubstr("34992012")));
   std::string other;
   for (const std::int32_t n : {90, 2147483647, -1}) append(other, n);
-  EXPECT_THAT(message(other),
-              HasSubstr("dimensions: found 90 x 2147483647 x -1, expected 90 x 90"));
+  EXPECT_THAT(message(other), HasSubstr("dimensions: found 90 x 2147483647 x -1, expected 90 x 90"));
 }
 
 }  // namespace

@@ -1,12 +1,13 @@
-#include <gonio/brdf/ndf/radial_ndf.h>
-#include <gonio/brdf/ndf/image/shadowing.h>
-#include <gonio/mapping/base/error.h>
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <limits>
 #include <string>
 #include <type_traits>
+
+#include <gtest/gtest.h>
+
+#include <gonio/brdf/ndf/image/shadowing.h>
+#include <gonio/brdf/ndf/radial_ndf.h>
+#include <gonio/mapping/base/error.h>
 
 #include "tests/support/ndf_cases.h"
 
@@ -104,7 +105,8 @@ TEST(RadialNdf, ExtractionFromPartOfTheAngles) {
         const auto whole = retro_reflection(ggx, masking);
         const auto hole = [](double t) { return t < 2 || (t > 20 && t < 22); };
         const ExtractedNdf found = extract_ndf(
-            [&](double theta) { return theta > last * degree || hole(theta / degree) ? std::nan("") : whole(theta); }, masking);
+            [&](double theta) { return theta > last * degree || hole(theta / degree) ? std::nan("") : whole(theta); },
+            masking);
         EXPECT_NEAR(found.measured_to, last * degree, 0.4 * degree);
         // The hole at the pole is filled with the value at its edge.
         EXPECT_NEAR(std::tan(found.ndf.median_theta()) / a, 1, a < 0.2 ? 0.02 : 0.005);
@@ -122,7 +124,8 @@ BrdfTable merl_table(const Ndf& ndf, Masking masking, double f0) {
   const std::size_t cells = file.cells();
   file.values.assign(3 * cells, -1.0);
   for (std::size_t i = 0; i < cells; ++i) {
-    const auto h = static_cast<double>(i / (180 * 90)), d = static_cast<double>(i / 180 % 90), p = static_cast<double>(i % 180);
+    const auto h = static_cast<double>(i / (180 * 90)), d = static_cast<double>(i / 180 % 90),
+               p = static_cast<double>(i % 180);
     glm::vec3 wi, wo;
     const double theta_h = pi<double> / 2 * std::pow((h + 0.5) / 90, 2), theta_d = (d + 0.5) * degree;
     directions_from_half_difference(theta_h, theta_d, (p + 0.5) * degree, wi, wo);
@@ -167,7 +170,8 @@ TEST(RadialNdf, ExtractionFromTables) {
     const ExtractedNdf found = extract_ndf(merl_table(ggx, Masking::full, 0.5));
     EXPECT_EQ(found.masking, Masking::full);
     EXPECT_NEAR(std::tan(found.ndf.median_theta()) / a, 1, 0.015);
-    for (double t = 0; t <= 85; t += 2.5) EXPECT_NEAR(found.ndf.g1(t * degree), ggx.g1(at(t * degree, 0)), 6e-3) << a << ' ' << t;
+    for (double t = 0; t <= 85; t += 2.5)
+      EXPECT_NEAR(found.ndf.g1(t * degree), ggx.g1(at(t * degree, 0)), 6e-3) << a << ' ' << t;
   }
 }
 
@@ -175,7 +179,9 @@ TEST(RadialNdf, ExtractionFromTables) {
 TEST(RadialNdf, ExtractionBeatsDivisionByCosines) {
   const GgxNdf ggx{0.8, 0.8};
   const auto f_r = retro_reflection(ggx);
-  RadialNdf naive(512, [&](double theta) { return f_r(std::min(theta, 89 * degree)) * std::pow(std::cos(std::min(theta, 89 * degree)), 2); });
+  RadialNdf naive(512, [&](double theta) {
+    return f_r(std::min(theta, 89 * degree)) * std::pow(std::cos(std::min(theta, 89 * degree)), 2);
+  });
   naive.normalise();
   const double t = 60 * degree, expected = ggx(at(t, 0));
   EXPECT_GT(std::abs(naive.eval(t) / expected - 1), 0.1);

@@ -1,15 +1,16 @@
 // Real materials through the writer and back: slow, since stacks are built.
 
+#include <algorithm>
+#include <cstdio>
+#include <ostream>
+
+#include <gtest/gtest.h>
+
 #include <gonio/brdf/bsdf/bsdf.h>
 #include <gonio/brdf/build/compact/fit_compact.h>
 #include <gonio/brdf/formats/rgl/rgl_write.h>
 #include <gonio/brdf/table/validate.h>
 #include <gonio/fitting/model/synth.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdio>
-#include <ostream>
 
 #include "tests/support/rgl_quality.h"
 #include "tests/support/table_files.h"
@@ -40,10 +41,8 @@ void expect_close(const std::string& name, const Reflectance& f_r, const Bounds&
     least = std::min(least, quality.integral);
     largest = std::max(largest, quality.integral);
   }
-  std::printf(
-      "%s: error mean %.4f, worst %.4f; pdf integrates to %.4f to %.4f; %zu angles, %ju bytes\n",
-      name.c_str(), mean, worst, least, largest, table.theta_i().size(),
-      std::filesystem::file_size(folder / "a.bsdf"));
+  std::printf("%s: error mean %.4f, worst %.4f; pdf integrates to %.4f to %.4f; %zu angles, %ju bytes\n", name.c_str(),
+              mean, worst, least, largest, table.theta_i().size(), std::filesystem::file_size(folder / "a.bsdf"));
   EXPECT_LT(mean, bounds.mean);
   EXPECT_LT(worst, bounds.worst);
   EXPECT_GT(least, 0.998);
@@ -78,8 +77,7 @@ TEST_P(MeasuredRgl, StackToRgl) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Rgl, MeasuredRgl,
-                         testing::Values(Material{"satin_rosaline", {}},
-                                         Material{"cg_sunflower", {0.01, 0.032}}),
+                         testing::Values(Material{"satin_rosaline", {}}, Material{"cg_sunflower", {0.01, 0.032}}),
                          name_of);
 
 // These stay above 1 %, as measured: bounds that a change for the worse breaks.
@@ -99,8 +97,7 @@ INSTANTIATE_TEST_SUITE_P(CarPaint, MeasuredMbsdf,
 
 TEST(RglOfMerl, SynthesisedTable) {
   const BrdfTable table(MerlTable(synthesize_merl(parse_model("default")), {}), {});
-  expect_close("default",
-               [&](const glm::vec3& wi, const glm::vec3& wo) { return table.eval(wi, wo); });
+  expect_close("default", [&](const glm::vec3& wi, const glm::vec3& wo) { return table.eval(wi, wo); });
 }
 
 }  // namespace

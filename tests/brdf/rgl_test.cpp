@@ -1,12 +1,13 @@
 #define GLM_ENABLE_EXPERIMENTAL  // glm/gtx, for rotations
-#include <gmock/gmock.h>
-#include <gonio/brdf/formats/rgl/rgl.h>
-#include <gonio/mapping/base/error.h>
-#include <gtest/gtest.h>
+#include <map>
 
 #include <glm/geometric.hpp>
 #include <glm/gtx/rotate_vector.hpp>
-#include <map>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <gonio/brdf/formats/rgl/rgl.h>
+#include <gonio/mapping/base/error.h>
 
 #include "tests/support/table_files.h"
 
@@ -54,8 +55,7 @@ TEST(Rgl, JacobianIsHonoured) {
 
 TEST(Rgl, BoundedAtTheHorizon) {
   const RglTable table = table_of(make_rgl({1, 1, 1}, false));
-  EXPECT_NEAR(table.eval(direction(0.3, 0), {1.0f, 0.0f, 1e-30f}).r, 1.0f / RglTable::min_cosine,
-              1.0);
+  EXPECT_NEAR(table.eval(direction(0.3, 0), {1.0f, 0.0f, 1e-30f}).r, 1.0f / RglTable::min_cosine, 1.0);
 }
 
 // With uniform warps the chart of the normals alone makes the density.
@@ -93,8 +93,7 @@ TEST(Rgl, ColourSitsWhereThetaAndPhiSay) {
   EXPECT_NEAR(table.eval_cosine(glm::vec3(wi), wo).r, expected, 0.02);
   EXPECT_NEAR(table.eval_cosine(glm::vec3(wi), wo).b, expected + 200.0f, 0.02);
   // Only the azimuth relative to wi counts.
-  EXPECT_NEAR(table.eval_cosine(glm::rotateZ(glm::vec3(wi), 2.5f), glm::rotateZ(wo, 2.5f)).r,
-              expected, 0.02);
+  EXPECT_NEAR(table.eval_cosine(glm::rotateZ(glm::vec3(wi), 2.5f), glm::rotateZ(wo, 2.5f)).r, expected, 0.02);
 }
 
 TEST(Rgl, NegativeColoursInterpolateAndClamp) {
@@ -119,8 +118,7 @@ TEST(Rgl, NegativeColoursInterpolateAndClamp) {
 }
 
 TEST(Rgl, AnisotropicFilesAreRefused) {
-  EXPECT_EQ(message(make_rgl({1, 1, 1}, true, 2)), "no error")
-      << "two equal azimuths are isotropic";
+  EXPECT_EQ(message(make_rgl({1, 1, 1}, true, 2)), "no error") << "two equal azimuths are isotropic";
   TensorBuilder two = make_rgl({1, 1, 1}, true, 2);
   std::string& data = two["luminance"].data;
   const float other = 9.0f;
@@ -159,8 +157,7 @@ TEST(Rgl, SpectraBecomeColour) {
 }
 
 TEST(Rgl, EveryFieldIsChecked) {
-  for (const char* name :
-       {"phi_i", "theta_i", "ndf", "sigma", "vndf", "luminance", "rgb", "jacobian"}) {
+  for (const char* name : {"phi_i", "theta_i", "ndf", "sigma", "vndf", "luminance", "rgb", "jacobian"}) {
     TensorBuilder missing = make_rgl();
     missing.remove(name);
     EXPECT_THAT(message(missing), HasSubstr(std::string(name) + ": found no such field"));
@@ -274,8 +271,8 @@ class RglMaterials : public ::testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
     if (test_data().empty()) GTEST_SKIP() << "GONIO_TEST_DATA is not set";
-    table_ = std::make_unique<RglTable>(
-        read_rgl(test_data() / "rgl" / (std::string(GetParam()) + ".bsdf")), CellPolicies{});
+    table_ =
+        std::make_unique<RglTable>(read_rgl(test_data() / "rgl" / (std::string(GetParam()) + ".bsdf")), CellPolicies{});
   }
   std::unique_ptr<RglTable> table_;
 };
@@ -298,8 +295,7 @@ TEST_P(RglMaterials, AgreeWithThePublishedLoader) {
       EXPECT_NEAR(found[k], v[6 + k], std::max(1e-5f, 1e-3f * v[6 + k])) << line << " column " << k;
     }
     for (int c = 0; c < 3; ++c) {
-      EXPECT_NEAR(table_->eval(wi, wo)[c] * std::max(wo.z, RglTable::min_cosine), value[c],
-                  1e-5f * value[c]);
+      EXPECT_NEAR(table_->eval(wi, wo)[c] * std::max(wo.z, RglTable::min_cosine), value[c], 1e-5f * value[c]);
     }
     ++pairs;
   }
@@ -327,8 +323,8 @@ TEST_P(RglMaterials, SampleAgreesWithPdfAndEval) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Measured, RglMaterials,
-                         ::testing::Values("cc_iris_purple_gem_rgb", "cg_sunflower_rgb",
-                                           "paper_white_rgb", "satin_rosaline_rgb"));
+                         ::testing::Values("cc_iris_purple_gem_rgb", "cg_sunflower_rgb", "paper_white_rgb",
+                                           "satin_rosaline_rgb"));
 
 }  // namespace
 }  // namespace gonio

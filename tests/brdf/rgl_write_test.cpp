@@ -1,16 +1,17 @@
+#include <algorithm>
+#include <random>
+
 #include <gmock/gmock.h>
-#include <gonio/brdf/ndf/radial_ndf.h>
+#include <gtest/gtest.h>
+
 #include <gonio/brdf/formats/rgl/rgl_write.h>
 #include <gonio/brdf/formats/rgl/spectrum.h>
-#include <gonio/brdf/table/table.h>
 #include <gonio/brdf/formats/rgl/tensor_file.h>
+#include <gonio/brdf/ndf/radial_ndf.h>
+#include <gonio/brdf/table/table.h>
 #include <gonio/brdf/table/validate.h>
 #include <gonio/fitting/model/model.h>
 #include <gonio/mapping/base/error.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <random>
 
 #include "tests/support/rgl_quality.h"
 #include "tests/support/table_files.h"
@@ -24,9 +25,7 @@ using Shape = std::vector<std::uint64_t>;
 using Type = TensorFile::Type;
 
 Reflectance model(const char* description) {
-  return [model = parse_model(description)](const glm::vec3& wi, const glm::vec3& wo) {
-    return model.eval(wi, wo);
-  };
+  return [model = parse_model(description)](const glm::vec3& wi, const glm::vec3& wo) { return model.eval(wi, wo); };
 }
 
 RglSize smallest() {
@@ -42,10 +41,8 @@ double integral(const RglFile::Grid& grid, int slice) {
   double sum = 0;
   for (int j = 0; j < grid.height; ++j) {
     for (int i = 0; i < grid.width; ++i) {
-      const double weight = (i == 0 || i == grid.width - 1 ? 0.5 : 1.0) *
-                            (j == 0 || j == grid.height - 1 ? 0.5 : 1.0);
-      sum += weight *
-             grid.values[static_cast<std::size_t>((slice * grid.height + j) * grid.width + i)];
+      const double weight = (i == 0 || i == grid.width - 1 ? 0.5 : 1.0) * (j == 0 || j == grid.height - 1 ? 0.5 : 1.0);
+      sum += weight * grid.values[static_cast<std::size_t>((slice * grid.height + j) * grid.width + i)];
     }
   }
   return sum / ((grid.width - 1) * (grid.height - 1));
@@ -58,15 +55,12 @@ void expect_normalised(const RglFile& file, double ndf_tolerance = 1e-5) {
   }
   const std::vector<float> row(file.ndf.values.begin(), file.ndf.values.begin() + file.ndf.width);
   RadialNdf ndf(file.ndf.width, [&](double theta) {
-    return row[static_cast<std::size_t>(
-        std::lround(std::sqrt(theta * 2 / test::pi) * (file.ndf.width - 1)))];
+    return row[static_cast<std::size_t>(std::lround(std::sqrt(theta * 2 / test::pi) * (file.ndf.width - 1)))];
   });
   EXPECT_NEAR(ndf.projected_area(), 1.0, ndf_tolerance);
   for (int k = 0; k < file.sigma.width; k += 15) {
     const double u = k / (file.sigma.width - 1.0);
-    EXPECT_NEAR(file.sigma.values[static_cast<std::size_t>(k)], ndf.sigma(test::pi / 2 * u * u),
-                ndf_tolerance)
-        << k;
+    EXPECT_NEAR(file.sigma.values[static_cast<std::size_t>(k)], ndf.sigma(test::pi / 2 * u * u), ndf_tolerance) << k;
   }
   EXPECT_NEAR(file.sigma.values.front(), 1.0, ndf_tolerance);
 }
@@ -109,8 +103,7 @@ TEST(RglResample, WeightsAreNearlyConstant) {
   constexpr int n = 256;
   double sum = 0, squares = 0;
   for (int i = 0; i < n * n; ++i) {
-    const auto s = table.sample(wi, (static_cast<float>(i % n) + 0.5f) / n,
-                                (static_cast<float>(i / n) + 0.5f) / n);
+    const auto s = table.sample(wi, (static_cast<float>(i % n) + 0.5f) / n, (static_cast<float>(i / n) + 0.5f) / n);
     const double weight = s ? luminance(s->f_r) * s->wo.z / s->pdf : 0.0;
     sum += weight;
     squares += weight * weight;
@@ -143,8 +136,7 @@ TEST(RglResample, SizesAreWithinRange) {
   least.vndf = 4;
   const RglFile file = resample_as_rgl(grey, "", least);
   const auto expect_finite = [](const std::vector<float>& values, const char* name) {
-    EXPECT_TRUE(std::all_of(values.begin(), values.end(), [](float x) { return std::isfinite(x); }))
-        << name;
+    EXPECT_TRUE(std::all_of(values.begin(), values.end(), [](float x) { return std::isfinite(x); })) << name;
   };
   expect_finite(file.vndf.values, "vndf");
   expect_finite(file.luminance.values, "luminance");
@@ -214,8 +206,7 @@ TEST(RglWrite, SpectraHaveTheColours) {
       rgb += weights[k] * spectra[(slice * weights.size() + k) * plane + i];
     }
     const glm::vec3 expected = file.colour[slice * plane + i];
-    for (int c = 0; c < 3; ++c)
-      EXPECT_NEAR(rgb[c], expected[c], 1e-4f * std::max(1.0f, expected.r));
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(rgb[c], expected[c], 1e-4f * std::max(1.0f, expected.r));
   }
 }
 
@@ -280,8 +271,7 @@ TEST(RglWrite, NaNStaysInItsChannel) {
   write_rgl(folder / "a.bsdf", file);
   std::vector<Problem> problems;
   const TensorFile read(file_bytes(folder / "a.bsdf"), problems);
-  const std::vector<float> rgb = read.floats(*read.find("rgb")),
-                           spectra = read.floats(*read.find("spectra"));
+  const std::vector<float> rgb = read.floats(*read.find("rgb")), spectra = read.floats(*read.find("spectra"));
   EXPECT_EQ(std::count_if(rgb.begin(), rgb.end(), [](float x) { return !std::isfinite(x); }), 1);
   // Spectra take the colour beside the cell, as gonio itself does.
   const std::size_t wavelengths = rgb_spectra().wavelengths.size();

@@ -1,8 +1,9 @@
-#include <gonio/brdf/ndf/image/shadowing.h>
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <random>
+
+#include <gtest/gtest.h>
+
+#include <gonio/brdf/ndf/image/shadowing.h>
 
 #include "tests/support/ndf_cases.h"
 
@@ -36,7 +37,8 @@ double worst_error(const Ndf& analytic, int size) {
 }
 
 TEST(Shadowing, ClosedFormsAt512) {
-  for (const auto& [ax, ay] : {std::pair{0.02, 0.02}, {0.05, 0.05}, {0.1, 0.1}, {0.3, 0.3}, {0.6, 0.6}, {1.0, 1.0}, {0.1, 0.4}, {0.5, 0.05}}) {
+  for (const auto& [ax, ay] :
+       {std::pair{0.02, 0.02}, {0.05, 0.05}, {0.1, 0.1}, {0.3, 0.3}, {0.6, 0.6}, {1.0, 1.0}, {0.1, 0.4}, {0.5, 0.05}}) {
     const double ggx = worst_error(GgxNdf{ax, ay}, 512), beckmann = worst_error(BeckmannNdf{ax, ay}, 512);
     EXPECT_LT(ggx, 3e-4) << "GGX " << ax << ' ' << ay;
     EXPECT_LT(beckmann, 3e-4) << "Beckmann " << ax << ' ' << ay;
@@ -48,7 +50,8 @@ TEST(Shadowing, FastIsTheDirectSum) {
   std::uniform_real_distribution<double> uniform;
   // Two tilted lobes of different width, away from all symmetry; and noise.
   DiskImage lobes = rasterise(200, [](const Vec3<double>& h) {
-    return std::exp(-300 * (std::pow(h.x - 0.5, 2) + std::pow(h.y + 0.3, 2))) + std::exp(-20 * (h.x * h.x + std::pow(h.y - 0.8, 2)));
+    return std::exp(-300 * (std::pow(h.x - 0.5, 2) + std::pow(h.y + 0.3, 2))) +
+           std::exp(-20 * (h.x * h.x + std::pow(h.y - 0.8, 2)));
   });
   DiskImage noise(64);
   for (float& v : noise.values) v = static_cast<float>(std::pow(uniform(engine), 8));

@@ -1,16 +1,17 @@
-#include <gonio/brdf/ndf/image/solid_angle.h>
-#include <gtest/gtest.h>
-
 #include <algorithm>
-#include <boost/math/constants/constants.hpp>
-#include <boost/math/quadrature/gauss.hpp>
-#include <boost/math/quadrature/tanh_sinh.hpp>
-#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
 #include <future>
 #include <limits>
 #include <random>
 #include <vector>
+
+#include <boost/math/constants/constants.hpp>
+#include <boost/math/quadrature/gauss.hpp>
+#include <boost/math/quadrature/tanh_sinh.hpp>
+#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <gtest/gtest.h>
+
+#include <gonio/brdf/ndf/image/solid_angle.h>
 
 namespace gonio {
 namespace {
@@ -160,7 +161,8 @@ TEST(SolidAngle, FloatIsRoundedOnce) {
     const float x0 = 1.5f * uniform(engine) - 0.75f, x1 = x0 + w, y0 = 1.5f * uniform(engine) - 0.75f, y1 = y0 + w;
     if (!(x1 > x0 && y1 > y0)) continue;
     const Quad exact = closed_form(x0, x1, y0, y1);
-    if (exact > 1e-17) worst = std::max(worst, relative(static_cast<double>(orthographic_solid_angle(x0, x1, y0, y1)), exact));
+    if (exact > 1e-17)
+      worst = std::max(worst, relative(static_cast<double>(orthographic_solid_angle(x0, x1, y0, y1)), exact));
   }
   EXPECT_LT(worst, float_error);
   EXPECT_GT(worst, 1e-9);
@@ -240,8 +242,9 @@ TEST(SolidAngle, NormalIntegral) {
       EXPECT_EQ(v.z, (x1 - x0) * (y1 - y0));
       double x = 0;  // Gauss quadrature of x / s
       boost::math::quadrature::gauss<double, 20> rule;
-      x = rule.integrate([&](double a) {
-        return rule.integrate([&](double b) { return a / std::sqrt(1 - a * a - b * b); }, y0, y1); }, x0, x1);
+      x = rule.integrate(
+          [&](double a) { return rule.integrate([&](double b) { return a / std::sqrt(1 - a * a - b * b); }, y0, y1); },
+          x0, x1);
       if (std::hypot(x0, y0) < 0.8) worst = std::max(worst, std::abs(v.x - x));
     }
   EXPECT_LT(worst, 2e-15);

@@ -1,5 +1,6 @@
-#include <gonio/brdf/formats/rgl/spectrum.h>
 #include <gtest/gtest.h>
+
+#include <gonio/brdf/formats/rgl/spectrum.h>
 
 namespace gonio {
 namespace {

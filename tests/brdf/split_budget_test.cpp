@@ -1,13 +1,12 @@
-#include <gonio/brdf/build/budget/split_budget.h>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <gonio/brdf/build/budget/split_budget.h>
 #include <gonio/mapping/base/error.h>
 
 namespace gonio {
@@ -32,7 +31,8 @@ double least(const Curves& curves, const std::vector<double>& weights, std::size
   if (k == curves.size()) return 0;
   double best = std::numeric_limits<double>::infinity();
   for (const BudgetPoint& p : curves[k]) {
-    if (p.bytes <= bytes) best = std::min(best, weights[k] * p.variance + least(curves, weights, bytes - p.bytes, k + 1));
+    if (p.bytes <= bytes)
+      best = std::min(best, weights[k] * p.variance + least(curves, weights, bytes - p.bytes, k + 1));
   }
   return best;
 }
@@ -76,7 +76,8 @@ double largest_hull_step(const Case& c) {
       std::size_t to = p;
       double steepest = 0;
       for (std::size_t q = p + 1; q < curve.size(); ++q) {
-        const double slope = (curve[p].variance - curve[q].variance) / static_cast<double>(curve[q].bytes - curve[p].bytes);
+        const double slope =
+            (curve[p].variance - curve[q].variance) / static_cast<double>(curve[q].bytes - curve[p].bytes);
         if (slope > steepest) steepest = slope, to = q;
       }
       if (to == p) break;
@@ -130,7 +131,8 @@ TEST(SplitBudget, BeatsAnEvenSplitOfUnevenMaterials) {
   Case c;
   for (int k = 0; k < 20; ++k) {
     std::vector<BudgetPoint> curve;
-    for (std::size_t bytes = 100; bytes <= 102400; bytes = bytes * 5 / 4) curve.push_back({bytes, 1 / static_cast<double>(bytes)});
+    for (std::size_t bytes = 100; bytes <= 102400; bytes = bytes * 5 / 4)
+      curve.push_back({bytes, 1 / static_cast<double>(bytes)});
     c.curves.push_back(curve);
     c.weights.push_back(k < 4 ? 0.2 : 0.0125);
   }
@@ -138,7 +140,8 @@ TEST(SplitBudget, BeatsAnEvenSplitOfUnevenMaterials) {
   const auto chosen = split_budget(c.curves, c.weights, bytes);
   EXPECT_LE(bytes_of(c.curves, chosen), bytes);
   // The optimum of v = 1/b over real numbers is bytes in proportion to sqrt(weight); even: 1/2000.
-  const double roots = 4 * std::sqrt(0.2) + 16 * std::sqrt(0.0125), optimum = roots * roots / static_cast<double>(bytes);
+  const double roots = 4 * std::sqrt(0.2) + 16 * std::sqrt(0.0125),
+               optimum = roots * roots / static_cast<double>(bytes);
   const double found = variance_of(c.curves, c.weights, chosen);
   EXPECT_LT(found, 1.05 * optimum);
   EXPECT_LT(found, 0.68 / 2000);
@@ -158,7 +161,8 @@ TEST(SplitBudget, SpendsNothingInVain) {
 
 TEST(SplitBudget, FillsUpWithWhatStillFits) {
   // The best step, 100 bytes of the first, does not fit; the small one of the second does.
-  EXPECT_EQ(split_budget({{{10, 100.0}, {110, 0.0}}, {{10, 1.0}, {20, 0.5}}}, {1, 1}, 50), (std::vector<std::size_t>{0, 1}));
+  EXPECT_EQ(split_budget({{{10, 100.0}, {110, 0.0}}, {{10, 1.0}, {20, 0.5}}}, {1, 1}, 50),
+            (std::vector<std::size_t>{0, 1}));
   // Nor does the hull's next point; one above the hull does.
   EXPECT_EQ(split_budget({{{10, 100.0}, {50, 90.0}, {110, 0.0}}}, {1}, 60), std::vector<std::size_t>{1});
 }

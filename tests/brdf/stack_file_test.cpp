@@ -1,3 +1,11 @@
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <random>
+#include <set>
+
 #include <ImathBox.h>
 #include <ImfChannelList.h>
 #include <ImfFloatAttribute.h>
@@ -11,21 +19,14 @@
 #include <ImfRgbaFile.h>
 #include <ImfStringAttribute.h>
 #include <ImfTiledRgbaFile.h>
-#include <gonio/mapping/base/bytes.h>
-#include <gonio/brdf/exr/stack_file.h>
-#include <gonio/brdf/proof/samplers/stack_bsdf.h>
-#include <gonio/mapping/stack/packed_stack.h>
-#include <gonio/mapping/base/error.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <cmath>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <limits>
-#include <random>
-#include <set>
+#include <gonio/brdf/exr/stack_file.h>
+#include <gonio/brdf/proof/samplers/stack_bsdf.h>
+#include <gonio/mapping/base/bytes.h>
+#include <gonio/mapping/base/error.h>
+#include <gonio/mapping/stack/packed_stack.h>
 
 namespace gonio {
 namespace {
@@ -90,7 +91,8 @@ StackFile make_packed_file() {
   const std::vector<double> phi = random_lines(random, 4, pi<double>), r = random_lines(random, 10, 1);
   for (int k = 0; k < 3; ++k) {
     DiagramGrid diagram{Azimuth::half, phi, r, {}};
-    for (std::size_t i = 0; i < phi.size() * r.size(); ++i) diagram.density.push_back(std::pow(10.0, 6 * uniform(random) - 3));
+    for (std::size_t i = 0; i < phi.size() * r.size(); ++i)
+      diagram.density.push_back(std::pow(10.0, 6 * uniform(random) - 3));
     grid.theta_i.push_back(0.7 * k);
     grid.diagrams.push_back(std::move(diagram));
   }
@@ -164,8 +166,7 @@ std::vector<RawPart> make_parts() {
 void write_parts(const fs::path& path, std::vector<RawPart>& parts) {
   std::vector<Imf::Header> headers;
   for (RawPart& part : parts) {
-    for (const std::string& c : part.channels)
-      part.header.channels().insert(c, Imf::Channel(Imf::FLOAT));
+    for (const std::string& c : part.channels) part.header.channels().insert(c, Imf::Channel(Imf::FLOAT));
     headers.push_back(part.header);
   }
   Imf::MultiPartOutputFile output(path.c_str(), headers.data(), static_cast<int>(headers.size()));
@@ -174,9 +175,8 @@ void write_parts(const fs::path& path, std::vector<RawPart>& parts) {
     const std::size_t pixel = parts[k].channels.size() * sizeof(float);
     Imf::FrameBuffer buffer;
     for (std::size_t c = 0; c < parts[k].channels.size(); ++c)
-      buffer.insert(parts[k].channels[c],
-                    Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(parts[k].pixels.data() + c),
-                               pixel, pixel * (window.max.x + 1)));
+      buffer.insert(parts[k].channels[c], Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(parts[k].pixels.data() + c),
+                                                     pixel, pixel * (window.max.x + 1)));
     Imf::OutputPart out(output, static_cast<int>(k));
     out.setFrameBuffer(buffer);
     out.writePixels(window.max.y + 1);
@@ -224,8 +224,7 @@ TEST_F(StackFileTest, LoadedBsdfIsTheSavedOne) {
   EXPECT_EQ(loaded.storage(), Storage::float32);
   const glm::vec3 wi(0.6f, 0, 0.8f);
   for (int k = 0; k < 64; ++k) {
-    const glm::vec2 u((static_cast<float>(k % 8) + 0.5f) / 8,
-                      (static_cast<float>(k / 8) + 0.5f) / 8);
+    const glm::vec2 u((static_cast<float>(k % 8) + 0.5f) / 8, (static_cast<float>(k / 8) + 0.5f) / 8);
     const auto a = saved.sample(wi, u), b = loaded.sample(wi, u);
     ASSERT_TRUE(a && b);
     EXPECT_EQ(a->wo, b->wo);
@@ -239,8 +238,7 @@ TEST_F(StackFileTest, RecognisedByContent) {
   EXPECT_TRUE(is_exr(path("a.binary")));
   write_bytes(path("b.exr"), "tensor_file");
   EXPECT_FALSE(is_exr(path("b.exr")));
-  EXPECT_NE(message_of(path("b.exr")).find("b.exr: content: found no OpenEXR file"),
-            std::string::npos);
+  EXPECT_NE(message_of(path("b.exr")).find("b.exr: content: found no OpenEXR file"), std::string::npos);
   EXPECT_THROW(is_exr(path("missing.exr")), Error);
   EXPECT_THROW(is_exr(folder_), Error);
 }
@@ -287,9 +285,11 @@ std::string not_finite(const S& bsdf) {
     const glm::vec3 wi(std::sin(theta_i), 0, std::cos(theta_i));
     const auto where = " at theta_i = " + std::to_string(theta_i);
     for (int k = 0; k < 64; ++k) {
-      const float u = static_cast<float>(k % 8) / 7 * (1 - 0x1p-24f), v = static_cast<float>(k / 8) / 7 * (1 - 0x1p-24f);
+      const float u = static_cast<float>(k % 8) / 7 * (1 - 0x1p-24f),
+                  v = static_cast<float>(k / 8) / 7 * (1 - 0x1p-24f);
       const auto drawn = bsdf.sample(wi, {u, v});
-      if (drawn && !(good(drawn->pdf) && all_good(drawn->weight) && std::abs(drawn->wo.z) <= 1)) return "a draw" + where;
+      if (drawn && !(good(drawn->pdf) && all_good(drawn->weight) && std::abs(drawn->wo.z) <= 1))
+        return "a draw" + where;
       const float z = std::max(u, 1e-6f), r = std::sqrt(1 - z * z), phi = 2 * pi<float> * v;
       const glm::vec3 wo(r * std::cos(phi), r * std::sin(phi), z);
       if (!good(bsdf.pdf(wi, wo))) return "a pdf" + where;
@@ -405,21 +405,21 @@ const Fault faults[] = {
     {"ColourWithoutAngles", [](Parts& p) { p[2].header = without(p[2].header, "gonio:theta_i"); },
      "part colour: attribute gonio:theta_i"},
     {"ColourAnglesNotAscending",
-     [](Parts& p) { p[2].header.insert("gonio:theta_i", Imf::FloatVectorAttribute({0.6f, 0.0f})); }, "colour: theta_i[1]"},
+     [](Parts& p) {
+       p[2].header.insert("gonio:theta_i", Imf::FloatVectorAttribute({0.6f, 0.0f}));
+     },
+     "colour: theta_i[1]"},
     {"Chart", [](Parts& p) { p[0].header.insert("gonio:chart", Imf::StringAttribute("sideways")); },
      "attribute gonio:chart: found sideways, expected one of outgoing, half"},
-    {"NoName", [](Parts& p) { p[0].header = without(p[0].header, "gonio:name"); },
-     "attribute gonio:name"},
+    {"NoName", [](Parts& p) { p[0].header = without(p[0].header, "gonio:name"); }, "attribute gonio:name"},
     {"NoLines", [](Parts& p) { p[1].header = without(p[1].header, "gonio:phi"); },
      "part diagram.001: attribute gonio:phi"},
     {"LinesOfAnotherType",
      [](Parts& p) {
-       p[1].header = without(p[1].header, "gonio:r"),
-       p[1].header.insert("gonio:r", Imf::FloatAttribute(1));
+       p[1].header = without(p[1].header, "gonio:r"), p[1].header.insert("gonio:r", Imf::FloatAttribute(1));
      },
      "part diagram.001: attribute gonio:r"},
-    {"TooFewLines",
-     [](Parts& p) { p[0].header.insert("gonio:phi", Imf::FloatVectorAttribute({0})); },
+    {"TooFewLines", [](Parts& p) { p[0].header.insert("gonio:phi", Imf::FloatVectorAttribute({0})); },
      "part diagram.000: gonio:phi: found 1 values"},
     {"TooManyLines",
      [](Parts& p) {
@@ -436,10 +436,8 @@ const Fault faults[] = {
        p[0].header.insert("gonio:r", Imf::FloatVectorAttribute({0, nan, 1}));
      },
      "parallels"},
-    {"AnglesNotAscending",
-     [](Parts& p) { p[1].header.insert("gonio:theta_i", Imf::FloatAttribute(0)); }, "theta_i[1]"},
-    {"AngleNotANumber",
-     [](Parts& p) { p[1].header.insert("gonio:theta_i", Imf::FloatAttribute(nan)); }, "theta_i[1]"},
+    {"AnglesNotAscending", [](Parts& p) { p[1].header.insert("gonio:theta_i", Imf::FloatAttribute(0)); }, "theta_i[1]"},
+    {"AngleNotANumber", [](Parts& p) { p[1].header.insert("gonio:theta_i", Imf::FloatAttribute(nan)); }, "theta_i[1]"},
     {"DensityNotANumber", [](Parts& p) { p[1].pixels[3] = nan; }, "density[3]: found nan"},
     {"DensityInfinite", [](Parts& p) { p[1].pixels[0] = std::numeric_limits<float>::infinity(); },
      "density[0]: found inf"},
@@ -451,9 +449,9 @@ const Fault faults[] = {
     {"ColourChannel", [](Parts& p) { p[2].channels[1] = "H"; }, "part colour: channel G"},
     {"ColourFirst", [](Parts& p) { std::swap(p[0].pixels, p[2].pixels), std::swap(p[0], p[2]); },
      "attribute gonio:format"},
-    {"ColourBetween", [](Parts& p) { std::swap(p[1], p[2]); },
-     "a part after colour"},
-    {"FirstPartRenamed", [](Parts& p) { p[0].header.setName("picture"); }, "name of part 0: found picture, expected diagram.000"},
+    {"ColourBetween", [](Parts& p) { std::swap(p[1], p[2]); }, "a part after colour"},
+    {"FirstPartRenamed", [](Parts& p) { p[0].header.setName("picture"); },
+     "name of part 0: found picture, expected diagram.000"},
     {"FirstPartMissing",
      [](Parts& p) {
        p[0].header.setName("diagram.001");
@@ -462,7 +460,8 @@ const Fault faults[] = {
      "name of part 0: found diagram.001, expected diagram.000"},
     {"GapInTheNumbers", [](Parts& p) { p[1].header.setName("diagram.002"); },
      "name of part 1: found diagram.002, expected diagram.001"},
-    {"ShortNumber", [](Parts& p) { p[1].header.setName("diagram.1"); }, "name of part 1: found diagram.1, expected diagram.001"},
+    {"ShortNumber", [](Parts& p) { p[1].header.setName("diagram.1"); },
+     "name of part 1: found diagram.1, expected diagram.001"},
     {"ColourRenamed", [](Parts& p) { p[2].header.setName("color"); },
      "name of part 2: found color, expected diagram.002, or colour as the last part"},
     {"NoDiagram", [](Parts& p) { p.resize(1), p[0].header.setName("colour"); }, "part colour"},

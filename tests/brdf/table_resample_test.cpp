@@ -1,7 +1,8 @@
-#include <gonio/brdf/table/albedo.h>
-#include <gonio/brdf/resample/table_resample.h>
-#include <gonio/mapping/base/error.h>
 #include <gtest/gtest.h>
+
+#include <gonio/brdf/resample/table_resample.h>
+#include <gonio/brdf/table/albedo.h>
+#include <gonio/mapping/base/error.h>
 
 #include "tests/support/table_files.h"
 
@@ -29,8 +30,7 @@ TEST(Write, LambertianStaysWhatItWas) {
 }
 
 TEST(Write, MerlOfMerlIsTheSame) {
-  const MerlFile file =
-      make_merl([](int h, int d, int p) { return 1.0 + (h * 7 + d * 3 + p) % 5; });
+  const MerlFile file = make_merl([](int h, int d, int p) { return 1.0 + (h * 7 + d * 3 + p) % 5; });
   const MerlFile again = sample_as_merl(BrdfTable(MerlTable(file, {}), {}), 180);
   int compared = 0;
   for (std::size_t i = 0; i < file.values.size(); i += 101) {
@@ -68,8 +68,7 @@ TEST(Write, GridKeepsItsCells) {
 TEST(Write, MeasuredAlbedosSurviveMerl) {
   if (test_data().empty()) GTEST_SKIP() << "GONIO_TEST_DATA is not set";
   const TemporaryFolder folder;
-  for (const char* name :
-       {"cc_iris_purple_gem_rgb", "cg_sunflower_rgb", "paper_white_rgb", "satin_rosaline_rgb"}) {
+  for (const char* name : {"cc_iris_purple_gem_rgb", "cg_sunflower_rgb", "paper_white_rgb", "satin_rosaline_rgb"}) {
     const BrdfTable table = load_table(test_data() / "rgl" / (std::string(name) + ".bsdf"));
     write_table_as_merl(table, folder / "m.binary");
     const BrdfTable merl = load_table(folder / "m.binary");

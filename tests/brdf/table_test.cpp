@@ -1,8 +1,9 @@
 #include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include <gonio/brdf/table/flat_from.h>
 #include <gonio/brdf/table/table.h>
 #include <gonio/mapping/base/error.h>
-#include <gtest/gtest.h>
 
 #include "tests/support/table_files.h"
 
@@ -57,9 +58,9 @@ TEST(Table, ZeroAtAndBelowTheHorizonAndNeverNaN) {
       EXPECT_EQ(table.eval(up, down), glm::vec3(0.0f));
       EXPECT_EQ(table.eval(down, up), glm::vec3(0.0f));
     }
-    for (const glm::vec3 odd : {glm::vec3(nan, 0, 1), glm::vec3(0, nan, 1), glm::vec3(0, 0, nan),
-                                glm::vec3(inf, 0, 1), glm::vec3(0, 0, inf), glm::vec3(0, 0, 1e-40f),
-                                glm::vec3(1, 0, 1e-40f), glm::vec3(-1, 0, 1e-30f)}) {
+    for (const glm::vec3 odd :
+         {glm::vec3(nan, 0, 1), glm::vec3(0, nan, 1), glm::vec3(0, 0, nan), glm::vec3(inf, 0, 1), glm::vec3(0, 0, inf),
+          glm::vec3(0, 0, 1e-40f), glm::vec3(1, 0, 1e-40f), glm::vec3(-1, 0, 1e-30f)}) {
       for (int c = 0; c < 3; ++c) {
         EXPECT_FALSE(std::isnan(table.eval(odd, up)[c])) << name;
         EXPECT_FALSE(std::isnan(table.eval(up, odd)[c])) << name;

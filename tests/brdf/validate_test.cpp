@@ -1,9 +1,10 @@
+#include <algorithm>
+
 #include <gmock/gmock.h>
-#include <gonio/brdf/formats/rgl/rgl.h>
-#include <gonio/brdf/table/validate.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <gonio/brdf/formats/rgl/rgl.h>
+#include <gonio/brdf/table/validate.h>
 
 #include "tests/support/table_files.h"
 
@@ -63,8 +64,7 @@ TEST(Validate, DoubtsThatDoNotForbidUse) {
   EXPECT_THAT(texts(problems), Contains(HasSubstr("albedo at 2 degrees: found 1.")));
   write_file(folder / "black", make_mbsdf(0, 2, 3, std::vector<float>(12, 0.0f)));
   EXPECT_THAT(texts(validate_table(folder / "black")), Contains(HasSubstr("albedo: found 0")));
-  write_merl(folder / "m",
-             make_merl([](int h, int, int p) { return h == 3 && p == 7 ? -1.0 : 0.1; }));
+  write_merl(folder / "m", make_merl([](int h, int, int p) { return h == 3 && p == 7 ? -1.0 : 0.1; }));
   EXPECT_THAT(texts(validate_table(folder / "m")), Contains(HasSubstr("missing (not measured)")));
 }
 
@@ -84,8 +84,7 @@ TEST(Validate, NaNFilledFiles) {
 // Every prefix of a file is damaged and says so.
 TEST(Validate, TruncatedAnywhere) {
   const TemporaryFolder folder;
-  const std::string files[] = {make_rgl().bytes(),
-                               make_mbsdf(1, 2, 2, std::vector<float>(24, 0.1f))};
+  const std::string files[] = {make_rgl().bytes(), make_mbsdf(1, 2, 2, std::vector<float>(24, 0.1f))};
   for (const std::string& bytes : files) {
     for (std::size_t size = 0; size < bytes.size(); ++size) {
       write_file(folder / "x", bytes.substr(0, size));
@@ -103,8 +102,7 @@ TEST(Validate, TruncatedAnywhere) {
     EXPECT_FALSE(usable(validate_table(folder / "x"))) << size;
   }
   write_file(folder / "x", merl + "x");
-  EXPECT_THAT(texts(validate_table(folder / "x")),
-              Contains(HasSubstr("file size: found 34992013")));
+  EXPECT_THAT(texts(validate_table(folder / "x")), Contains(HasSubstr("file size: found 34992013")));
 }
 
 // One byte changed anywhere: whatever comes out, nothing is read past the end (run under a
@@ -147,11 +145,9 @@ TEST(Validate, MislabelledFiles) {
   write_file(folder / "b", "tensor_file" + make_mbsdf(0, 1, 1, {1.0f}));
   rgl[12] = 9;
   write_file(folder / "c", rgl);
-  EXPECT_THAT(texts(validate_table(folder / "a")),
-              Contains(HasSubstr("header: found binary data")));
+  EXPECT_THAT(texts(validate_table(folder / "a")), Contains(HasSubstr("header: found binary data")));
   EXPECT_THAT(texts(validate_table(folder / "b")), Contains(HasSubstr("magic: found")));
-  EXPECT_THAT(texts(validate_table(folder / "c")),
-              Contains(HasSubstr("container version: found 9.0")));
+  EXPECT_THAT(texts(validate_table(folder / "c")), Contains(HasSubstr("container version: found 9.0")));
   EXPECT_THAT(texts(validate_table(folder / "none")), Contains(HasSubstr("no such file")));
 }
 

@@ -1,8 +1,9 @@
-#include <gonio/brdf/formats/rgl/warp2d.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <random>
+
+#include <gtest/gtest.h>
+
+#include <gonio/brdf/formats/rgl/warp2d.h>
 
 namespace gonio {
 namespace {
@@ -56,8 +57,7 @@ TEST(Warp2d, SamplesFollowTheDensity) {
   const int n = 500;
   double sampled[5] = {}, expected[5] = {};
   for (int i = 0; i < n * n; ++i) {
-    const float a = (static_cast<float>(i % n) + 0.5f) / n,
-                b = (static_cast<float>(i / n) + 0.5f) / n;
+    const float a = (static_cast<float>(i % n) + 0.5f) / n, b = (static_cast<float>(i / n) + 0.5f) / n;
     const auto add = [](double* sums, double x, double y, double weight) {
       const double terms[5] = {x, y, x * x, y * y, x * y};
       for (int k = 0; k < 5; ++k) sums[k] += weight * terms[k];

@@ -1,8 +1,9 @@
-#include <gonio/fitting/fit/delta_e.h>
-#include <gonio/fitting/fit/errors.h>
+#include <cmath>
+
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <gonio/fitting/fit/delta_e.h>
+#include <gonio/fitting/fit/errors.h>
 
 namespace gonio {
 namespace {
@@ -102,13 +103,15 @@ TEST(FitErrors, OfWhatWasMeasured) {
       return glm::vec3(wi.z < lowest || wo.z < lowest ? std::numeric_limits<float>::quiet_NaN() : value);
     };
   };
-  const FitErrorReport part = fit_errors(cut(0.1f), constant(0.11f)), whole = fit_errors(constant(0.1f), constant(0.11f), 30 * degree);
+  const FitErrorReport part = fit_errors(cut(0.1f), constant(0.11f)),
+                       whole = fit_errors(constant(0.1f), constant(0.11f), 30 * degree);
   EXPECT_EQ(part.inside.cosine_rms, whole.inside.cosine_rms);
   EXPECT_EQ(part.inside.log_rms, whole.inside.log_rms);
   EXPECT_EQ(part.inside.relative_l1, whole.inside.relative_l1);
   EXPECT_EQ(part.inside.delta_e, whole.inside.delta_e);
   EXPECT_NEAR(part.inside.albedo, 0.01 * pi<double> / 4, 2e-4);  // sin^2 of 30 degrees of the hemisphere's
-  for (const double e : {part.beyond.cosine_rms, part.beyond.log_rms, part.beyond.relative_l1, part.beyond.albedo, part.beyond.delta_e})
+  for (const double e :
+       {part.beyond.cosine_rms, part.beyond.log_rms, part.beyond.relative_l1, part.beyond.albedo, part.beyond.delta_e})
     EXPECT_TRUE(std::isnan(e));
 }
 

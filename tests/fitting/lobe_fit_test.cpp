@@ -1,20 +1,20 @@
-#include <ceres/gradient_checker.h>
+#include <cmath>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
 #include <Eigen/Dense>
+#include <ceres/gradient_checker.h>
+#include <glm/vec2.hpp>
+#include <gtest/gtest.h>
+
 #include <gonio/brdf/formats/merl.h>
 #include <gonio/fitting/fit/fit.h>
 #include <gonio/fitting/fit/linear_start.h>
 #include <gonio/fitting/fit/residual.h>
 #include <gonio/fitting/model/synth.h>
 #include <gonio/mapping/base/error.h>
-#include <gtest/gtest.h>
-
-#include <glm/vec2.hpp>
-
-#include <cmath>
-#include <memory>
-#include <random>
-#include <string>
-#include <vector>
 
 namespace gonio {
 namespace {
@@ -40,8 +40,7 @@ BrdfFunction noisy(const LobeModel& model) {
   };
 }
 
-void expect_parameters(const LobeModel& found, const LobeModel& truth, double tolerance,
-                       const std::string& what) {
+void expect_parameters(const LobeModel& found, const LobeModel& truth, double tolerance, const std::string& what) {
   ASSERT_EQ(found.lobes.size(), truth.lobes.size()) << what;
   const detail::ParameterLayout layout(truth, true);
   LobeModel a = found, b = truth;
@@ -115,16 +114,14 @@ glm::dvec2 conductor_bound(const Lobe& lobe, double cutoff) {
 // Every eta and k comes back without noise. With it the reflectance does, and where the table
 // determines them, eta and k. For the first metal it does not: no fit could be within 5 %.
 TEST(Fit, RecoversConductors) {
-  const LobeModel truth =
-      parse_model("lambert:albedo=0.1+ggx:alpha=0.3,eta=0.3/0.9/1.2,k=3.5/2.5/2");
+  const LobeModel truth = parse_model("lambert:albedo=0.1+ggx:alpha=0.3,eta=0.3/0.9/1.2,k=3.5/2.5/2");
   expect_parameters(fit(exact(truth), truth).model, truth, 0.01, "conductor");
   const Lobe &lobe = truth.lobes[1], found = fit(noisy(truth), truth).model.lobes[1];
   EXPECT_NEAR(found.shape[0].r, 0.3, 0.005);
   for (int c = 0; c < 3; ++c) {
     for (double cos_d : {1.0, 0.7, 0.4}) {
       const double expected = conductor(lobe.color[0][c], lobe.color[1][c], cos_d);
-      EXPECT_NEAR(conductor(found.color[0][c], found.color[1][c], cos_d), expected,
-                  0.01 * expected);
+      EXPECT_NEAR(conductor(found.color[0][c], found.color[1][c], cos_d), expected, 0.01 * expected);
     }
     if (c == 0) continue;
     EXPECT_NEAR(found.color[0][c], lobe.color[0][c], 0.05 * lobe.color[0][c]);
@@ -149,15 +146,13 @@ TEST(Fit, RecoversModelsFromTablesInMerlLayout) {
   };
   for (const Case& c : {Case{"ggx:alpha=0.01,F0=0.02", 0, 0.001}, Case{"ggx:alpha=1,F0=1", 0, 0.001},
                         Case{"beckmann:alpha=0.02,F0=1", 0, 0.001}, Case{"beckmann:alpha=1,F0=0.02", 0, 0.001},
-                        Case{"lambert:albedo=0.5/0.3/0.1+ggx:alpha=0.15,F0=0.05", 0, 0.01},
-                        Case{"default", 0, 0.01}, Case{"default", 0.02, 0.05}}) {
+                        Case{"lambert:albedo=0.5/0.3/0.1+ggx:alpha=0.15,F0=0.05", 0, 0.01}, Case{"default", 0, 0.01},
+                        Case{"default", 0.02, 0.05}}) {
     const LobeModel truth = parse_model(c.text);
     SynthOptions options;
     options.noise_sigma = c.noise;
     const MerlTable table(synthesize_merl(truth, options), {});
-    const BrdfFunction f = [&](const glm::vec3& wi, const glm::vec3& wo) {
-      return table.eval(wi, wo);
-    };
+    const BrdfFunction f = [&](const glm::vec3& wi, const glm::vec3& wo) { return table.eval(wi, wo); };
     expect_parameters(fit(f, truth).model, truth, c.tolerance,
                       std::string(c.text) + " noise " + std::to_string(c.noise));
   }
@@ -169,7 +164,8 @@ TEST(Fit, RecoversGgxFromAGrid) {
     for (const double f0 : {0.02, 1.0}) {
       const LobeModel truth = parse_model("ggx:alpha=" + std::to_string(alpha) + ",F0=" + std::to_string(f0));
       const MbsdfTable table(synthesize_mbsdf(truth));
-      const Lobe found = fit([&](const glm::vec3& wi, const glm::vec3& wo) { return table.eval(wi, wo); }, truth).model.lobes[0];
+      const Lobe found =
+          fit([&](const glm::vec3& wi, const glm::vec3& wo) { return table.eval(wi, wo); }, truth).model.lobes[0];
       EXPECT_NEAR(found.shape[0].r / alpha, 1, tolerance) << f0;
       EXPECT_NEAR(found.color[0].r / f0, 1, tolerance) << alpha;
     }
@@ -182,8 +178,7 @@ TEST(Fit, DerivativesAgreeWithDifferences) {
   for (LobeKind kind : lobe_kinds()) {
     for (Fresnel fresnel : {Fresnel::schlick, Fresnel::conductor}) {
       for (bool separate : {false, true}) {
-        for (Compression compression :
-             {Compression::none, Compression::cube_root, Compression::log}) {
+        for (Compression compression : {Compression::none, Compression::cube_root, Compression::log}) {
           LobeModel model;
           model.lobes = {Lobe::initial(LobeKind::lambert), Lobe::initial(kind, fresnel)};
           const detail::ParameterLayout layout(model, separate);
@@ -195,8 +190,7 @@ TEST(Fit, DerivativesAgreeWithDifferences) {
           const ceres::GradientChecker checker(&residual, flat, options);
           const double* parameters[] = {x.data()};
           ceres::GradientChecker::ProbeResults results;
-          EXPECT_TRUE(checker.Probe(parameters, 1e-4, &results))
-              << lobe_info(kind).id << ": " << results.error_log;
+          EXPECT_TRUE(checker.Probe(parameters, 1e-4, &results)) << lobe_info(kind).id << ": " << results.error_log;
         }
       }
     }
@@ -211,8 +205,8 @@ TEST(Fit, MoreLobesNeverFitWorse) {
   FitOptions coarse;
   coarse.theta_h = 30;
   coarse.theta_d = 6;
-  for (const char* form : {"lambert+ggx+ggx+ggx", "lambert+blinn_phong+ggx+ward",
-                           "lambert+ggx:eta=1+ggx:eta=1+ggx:eta=1"}) {
+  for (const char* form :
+       {"lambert+ggx+ggx+ggx", "lambert+blinn_phong+ggx+ward", "lambert+ggx:eta=1+ggx:eta=1+ggx:eta=1"}) {
     const std::vector<Fit> fits = fit_stages(exact(truth), parse_model(form), coarse);
     ASSERT_EQ(fits.size(), 3u);
     for (size_t k = 1; k < fits.size(); ++k) {
@@ -333,7 +327,8 @@ TEST(Fit, LooksAtMeasuredCellsAlone) {
     fit(measured_part(BrdfTable(MbsdfTable(one), {})), truth);
     ADD_FAILURE() << "one cell was enough";
   } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("no pair of directions within 75 degrees"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("no pair of directions within 75 degrees"), std::string::npos)
+        << error.what();
   }
 }
 

@@ -1,13 +1,13 @@
 // The harness of gonio::proof on every lobe's own sample and pdf, and on LobeSampler.
 
-#include <gonio/brdf/proof/gtest.h>
-#include <gonio/fitting/sampling/lobe_sampler.h>
-#include <gonio/fitting/model/synth.h>
-
 #include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
+
+#include <gonio/brdf/proof/gtest.h>
+#include <gonio/fitting/model/synth.h>
+#include <gonio/fitting/sampling/lobe_sampler.h>
 
 namespace gonio::proof {
 namespace {
@@ -48,8 +48,7 @@ Subject subject_of(const LobeCase& c, double pdf_scale = 1) {
   const auto f_r = [c](const glm::vec3& wi, const glm::vec3& wo) {
     if (!(wi.z > 0 && wo.z > 0)) return glm::vec3(0);
     const Angles<double> a{glm::dvec3(wi), glm::dvec3(wo)};
-    return glm::vec3(static_cast<float>(
-        visit_lobe(c.kind, c.shape, [&](const auto& lobe) { return lobe.eval(a); })));
+    return glm::vec3(static_cast<float>(visit_lobe(c.kind, c.shape, [&](const auto& lobe) { return lobe.eval(a); })));
   };
   const auto sample = [=](const glm::vec3& wi, const glm::vec2& u) -> std::optional<BsdfSample> {
     const auto drawn = visit_lobe(c.kind, c.shape, [&](const auto& lobe) {
@@ -76,8 +75,7 @@ InvariantOptions lobe_options() {
 
 TEST(LobeInvariants, HoldForEveryLobe) {
   for (const LobeKind kind : lobe_kinds()) {
-    EXPECT_TRUE(std::any_of(cases().begin(), cases().end(),
-                            [&](const LobeCase& c) { return c.kind == kind; }))
+    EXPECT_TRUE(std::any_of(cases().begin(), cases().end(), [&](const LobeCase& c) { return c.kind == kind; }))
         << lobe_info(kind).id << " is not among the cases";
   }
   for (const LobeCase& c : cases()) {
@@ -89,10 +87,8 @@ TEST(LobeInvariants, HoldForEveryLobe) {
 }
 
 TEST(LobeInvariants, HoldForLobeSampler) {
-  const LobeModel model =
-      parse_model("lambert:albedo=0.3/0.2/0.1+ggx:alpha=0.4,F0=0.05+ggx:alpha=0.12,F0=0.1");
-  const auto table =
-      std::make_shared<const BrdfTable>(MbsdfTable(synthesize_mbsdf(model)), BrdfTable::Info{});
+  const LobeModel model = parse_model("lambert:albedo=0.3/0.2/0.1+ggx:alpha=0.4,F0=0.05+ggx:alpha=0.12,F0=0.1");
+  const auto table = std::make_shared<const BrdfTable>(MbsdfTable(synthesize_mbsdf(model)), BrdfTable::Info{});
   for (const Adaption adaption : {Adaption::albedo, Adaption::weights, Adaption::shapes}) {
     LobeSamplerOptions with;
     with.adaption = adaption;
@@ -113,8 +109,7 @@ TEST(LobeInvariants, NegativeControls) {
       if (check.name == name) return !check.passed;
     return false;
   };
-  for (const LobeCase& c : cases())
-    EXPECT_TRUE(fails(subject_of(c, 1.01), "mass")) << lobe_info(c.kind).id;
+  for (const LobeCase& c : cases()) EXPECT_TRUE(fails(subject_of(c, 1.01), "mass")) << lobe_info(c.kind).id;
   Subject other = subject_of(LobeCase{LobeKind::ggx, {0.4, 0}});
   other.sample = subject_of(LobeCase{LobeKind::ggx, {0.42, 0}}).sample;
   EXPECT_TRUE(fails(other, "chi_square"));

@@ -1,14 +1,15 @@
-#include <gonio/fitting/fit/fit.h>
-#include <gonio/fitting/sampling/lobe_sampler.h>
-#include <gonio/fitting/sampling/proposal.h>
-#include <gonio/fitting/model/synth.h>
-#include <gonio/mapping/base/error.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <memory>
 #include <random>
 #include <vector>
+
+#include <gtest/gtest.h>
+
+#include <gonio/fitting/fit/fit.h>
+#include <gonio/fitting/model/synth.h>
+#include <gonio/fitting/sampling/lobe_sampler.h>
+#include <gonio/fitting/sampling/proposal.h>
+#include <gonio/mapping/base/error.h>
 
 namespace gonio {
 namespace {
@@ -19,8 +20,7 @@ glm::vec3 direction(double theta_degrees, double phi_degrees = 0) {
 }
 
 const LobeModel& paint() {
-  static const LobeModel model =
-      parse_model("lambert:albedo=0.3/0.2/0.1+ggx:alpha=0.4,F0=0.05+ggx:alpha=0.12,F0=0.1");
+  static const LobeModel model = parse_model("lambert:albedo=0.3/0.2/0.1+ggx:alpha=0.4,F0=0.05+ggx:alpha=0.12,F0=0.1");
   return model;
 }
 
@@ -64,8 +64,7 @@ double relvar(const LobeSampler& s, const glm::vec3& wi) {
   double sum = 0, square = 0;
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < n; ++j) {
-      const auto draw = s.sample(
-          wi, glm::vec2(float(i) + uniform(random), float(j) + uniform(random)) / float(n));
+      const auto draw = s.sample(wi, glm::vec2(float(i) + uniform(random), float(j) + uniform(random)) / float(n));
       const double w = draw ? luminance(draw->weight) : 0;
       sum += w;
       square += w * w;
@@ -143,15 +142,13 @@ TEST(LobeSampler, SampleAgreesWithPdfAndTable) {
 
 TEST(LobeSampler, EstimatesTheAlbedoWithoutBias) {
   const glm::vec3 wi = direction(50);
-  const double albedo =
-      integrate([&](const glm::vec3& wo) { return luminance(table()->eval(wi, wo)) * wo.z; });
+  const double albedo = integrate([&](const glm::vec3& wo) { return luminance(table()->eval(wi, wo)) * wo.z; });
   for (Adaption adaption : all) {
     double sum = 0;
     const int n = 256;
     for (int i = 0; i < n; ++i) {
       for (int j = 0; j < n; ++j) {
-        const auto draw =
-            sampler(adaption).sample(wi, glm::vec2(float(i) + 0.5f, float(j) + 0.5f) / float(n));
+        const auto draw = sampler(adaption).sample(wi, glm::vec2(float(i) + 0.5f, float(j) + 0.5f) / float(n));
         sum += draw ? luminance(draw->weight) : 0;
       }
     }
@@ -174,8 +171,7 @@ TEST(LobeSampler, PositiveWhereverTheTableIs) {
 TEST(LobeSampler, AdaptionReducesTheVariance) {
   for (double theta : {10.0, 50.0, 75.0}) {
     const glm::vec3 wi = direction(theta);
-    const double by_albedo = relvar(sampler(Adaption::albedo), wi),
-                 by_weights = relvar(sampler(Adaption::weights), wi);
+    const double by_albedo = relvar(sampler(Adaption::albedo), wi), by_weights = relvar(sampler(Adaption::weights), wi);
     const double by_shapes = relvar(sampler(Adaption::shapes), wi);
     EXPECT_LE(by_weights, by_albedo * 1.02 + 1e-3) << theta;
     EXPECT_LE(by_shapes, by_weights * 1.02 + 1e-3) << theta;
@@ -184,8 +180,7 @@ TEST(LobeSampler, AdaptionReducesTheVariance) {
   // Negative control: lobes of another material cost variance.
   LobeSamplerOptions options;
   options.adaption = Adaption::albedo;
-  const LobeSampler wrong(table(), parse_model("lambert:albedo=0.01+ggx:alpha=0.02,F0=0.9"),
-                          options);
+  const LobeSampler wrong(table(), parse_model("lambert:albedo=0.01+ggx:alpha=0.02,F0=0.9"), options);
   EXPECT_GT(relvar(wrong, direction(30)), 1);
 }
 
@@ -237,8 +232,7 @@ TEST(ShearedGgx, WithoutShearIsGgxBeforeMirroring) {
   const Ggx<double> ggx{0.3};
   const glm::dvec3 wi(std::sin(0.6), 0, std::cos(0.6));
   for (double phi : {0.1, 2.0, 3.0}) {
-    const glm::dvec3 wo(std::sin(0.8) * std::cos(phi), std::sin(0.8) * std::sin(phi),
-                        std::cos(0.8));
+    const glm::dvec3 wo(std::sin(0.8) * std::cos(phi), std::sin(0.8) * std::sin(phi), std::cos(0.8));
     const double expected = ggx.pdf(Angles<double>(wi, wo));
     EXPECT_NEAR(sheared.unfolded_pdf(wi, glm::normalize(wi + wo)), expected, 1e-12);
   }
@@ -248,11 +242,9 @@ TEST(ShearedGgx, WithoutShearIsGgxBeforeMirroring) {
 TEST(ShearedGgx, DrawsFollowThePdf) {
   const int rows = 8, columns = 12, draws = 200000, n = 600;
   for (const ShearedGgx<double>& lobe :
-       {ShearedGgx<double>{0.2, 0.5, 0.3}, ShearedGgx<double>{0.6, 0.3, -0.8},
-        ShearedGgx<double>{1.5, 0.4, 1.2}}) {
+       {ShearedGgx<double>{0.2, 0.5, 0.3}, ShearedGgx<double>{0.6, 0.3, -0.8}, ShearedGgx<double>{1.5, 0.4, 1.2}}) {
     for (double theta : {0.0, 40.0, 85.0}) {
-      const glm::dvec3 wi(std::sin(theta * pi<double> / 180), 0,
-                          std::cos(theta * pi<double> / 180));
+      const glm::dvec3 wi(std::sin(theta * pi<double> / 180), 0, std::cos(theta * pi<double> / 180));
       const auto cell = [&](const glm::dvec3& wo) {
         const int row = std::min(rows - 1, int(rows * wo.z));
         const double turn = std::atan2(wo.y, wo.x) / (2 * pi<double>)+0.5;
@@ -267,16 +259,14 @@ TEST(ShearedGgx, DrawsFollowThePdf) {
       }
       for (int i = 0; i < n; ++i) {
         for (int j = 0; j < n; ++j) {
-          const double z = (i + 0.5) / n, s = std::sqrt(1 - z * z),
-                       phi = 2 * pi<double> * (j + 0.5) / n;
+          const double z = (i + 0.5) / n, s = std::sqrt(1 - z * z), phi = 2 * pi<double> * (j + 0.5) / n;
           const glm::dvec3 wo(s * std::cos(phi), s * std::sin(phi), z);
           expected[cell(wo)] += lobe.pdf(wi, wo) * 2 * pi<double> / n / n * draws;
         }
       }
       double total = 0;
       for (int i = 0; i < rows * columns; ++i) {
-        EXPECT_NEAR(counts[i], expected[i], 5 * std::sqrt(expected[i] + 1) + 0.02 * expected[i])
-            << theta;
+        EXPECT_NEAR(counts[i], expected[i], 5 * std::sqrt(expected[i] + 1) + 0.02 * expected[i]) << theta;
         total += expected[i];
       }
       EXPECT_NEAR(total / draws, 1, 5e-3) << theta;
@@ -288,13 +278,12 @@ TEST(Proposal, RefiningFindsTheMixtureThatMadeTheTarget) {
   const ShearedGgx<double> lobe{0.15, 0.3, 0.1};
   const double theta_i = 0.7;
   const BrdfFunction f = [&](const glm::vec3& wi, const glm::vec3& wo) {
-    const double p =
-        0.4 * cosine_pdf(double(wo.z)) + 0.6 * lobe.pdf(glm::dvec3(wi), glm::dvec3(wo));
+    const double p = 0.4 * cosine_pdf(double(wo.z)) + 0.6 * lobe.pdf(glm::dvec3(wi), glm::dvec3(wo));
     return glm::vec3(glm::dvec3(p / wo.z));
   };
   const detail::Quadrature q = detail::quadrature(f, theta_i);
-  const detail::Proposal start = detail::albedo_proposal(
-      parse_model("lambert:albedo=0.3+ggx:alpha=0.6,F0=1,F90=1"), theta_i, 0.01);
+  const detail::Proposal start =
+      detail::albedo_proposal(parse_model("lambert:albedo=0.3+ggx:alpha=0.6,F0=1,F90=1"), theta_i, 0.01);
   const detail::Proposal found = detail::refine_proposal(q, start, true, 0.01);
   EXPECT_GT(detail::relative_variance(q, start), 0.5);
   EXPECT_LT(detail::relative_variance(q, found), 1e-3);

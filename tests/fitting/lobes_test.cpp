@@ -1,11 +1,12 @@
-#include <ceres/jet.h>
-#include <gonio/fitting/model/model.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <random>
 #include <string>
 #include <vector>
+
+#include <ceres/jet.h>
+#include <gtest/gtest.h>
+
+#include <gonio/fitting/model/model.h>
 
 namespace gonio {
 namespace {
@@ -47,8 +48,7 @@ const std::vector<Case>& cases() {
 }
 
 std::string text(const Case& c) {
-  return std::string(lobe_info(c.kind).id) + " " + std::to_string(c.shape[0]) + " " +
-         std::to_string(c.shape[1]);
+  return std::string(lobe_info(c.kind).id) + " " + std::to_string(c.shape[0]) + " " + std::to_string(c.shape[1]);
 }
 
 double eval(const Case& c, const Vec& wi, const Vec& wo) {
@@ -138,8 +138,8 @@ double worst_deviation(const Case& c, const Case& claimed, const Vec& wi) {
       const double cos_d = glm::dot(wi, h);
       const Vec wo = reflect_about(wi, h);
       if (cos_d <= 0 || wo.z <= 0) continue;
-      expected[cell(wo)] += pdf(claimed, wi, wo) * 4 * cos_d * std::sin(theta) * d_theta * 2 *
-                            pi<double> / n_phi * draws;
+      expected[cell(wo)] +=
+          pdf(claimed, wi, wo) * 4 * cos_d * std::sin(theta) * d_theta * 2 * pi<double> / n_phi * draws;
     }
   }
   double worst = 0;
@@ -206,9 +206,9 @@ TEST(Lobes, StatedEnergies) {
     for (double theta : {20.0, 60.0}) {
       const double s2 = sigma * sigma, t = theta * degree, sin_t = std::sin(t);
       const double a = 1 - 0.5 * s2 / (s2 + 0.33), b = 0.45 * s2 / (s2 + 0.09);
-      const double closed = a + b / pi<double> *
-                                    (sin_t * (t - sin_t * std::cos(t)) +
-                                     2.0 / 3 * std::tan(t) * (1 - sin_t * sin_t * sin_t));
+      const double closed =
+          a +
+          b / pi<double> * (sin_t * (t - sin_t * std::cos(t)) + 2.0 / 3 * std::tan(t) * (1 - sin_t * sin_t * sin_t));
       EXPECT_NEAR(at(LobeKind::oren_nayar, sigma, 0, theta), closed, 2e-3);
     }
   }
@@ -245,8 +245,7 @@ TEST(Lobes, StudentTMaskingIsTheSmithTermOfItsSlopes) {
         }
         const Vec wi = direction(theta * degree);
         const Angles<double> a(wi, Vec(0, 0, 1));
-        const double d =
-            pdf({LobeKind::student_t, {alpha, gamma}}, wi, Vec(0, 0, 1)) * 4 * a.cos_d / a.cos_h;
+        const double d = pdf({LobeKind::student_t, {alpha, gamma}}, wi, Vec(0, 0, 1)) * 4 * a.cos_d / a.cos_h;
         const double f = eval({LobeKind::student_t, {alpha, gamma}}, wi, Vec(0, 0, 1));
         EXPECT_NEAR(d / (4 * a.cos_i * f), 1 + above / all, 5e-3 * (1 + above / all))
             << gamma << " " << alpha << " " << theta;
@@ -261,8 +260,7 @@ TEST(Lobes, DerivativesAgreeWithDifferences) {
   std::uniform_real_distribution<double> uniform(0, 1);
   for (const Case& c : cases()) {
     for (int i = 0; i < 50; ++i) {
-      const Vec wi = direction(1.4 * uniform(random)),
-                wo = direction(1.4 * uniform(random), 2 + 2 * uniform(random));
+      const Vec wi = direction(1.4 * uniform(random)), wo = direction(1.4 * uniform(random), 2 + 2 * uniform(random));
       const Angles<double> a(wi, wo);
       const Jet shape[max_shape] = {Jet(c.shape[0], 0), Jet(c.shape[1], 1)};
       const Jet value = visit_lobe(c.kind, shape, [&](const auto& lobe) { return lobe.eval(a); });
@@ -273,8 +271,7 @@ TEST(Lobes, DerivativesAgreeWithDifferences) {
         up.shape[p] += step;
         down.shape[p] -= step;
         const double difference = (eval(up, wi, wo) - eval(down, wi, wo)) / (2 * step);
-        EXPECT_NEAR(value.v[p], difference,
-                    1e-4 * (std::fabs(difference) + value.a / c.shape[p]) + 1e-250)
+        EXPECT_NEAR(value.v[p], difference, 1e-4 * (std::fabs(difference) + value.a / c.shape[p]) + 1e-250)
             << text(c) << " parameter " << p;
       }
     }
@@ -291,8 +288,7 @@ TEST(Lobes, FloatFollowsDouble) {
       const auto wo = sample(c, wi, uniform(random), uniform(random));
       if (!wo) continue;
       const Angles<float> a{glm::vec3(wi), glm::vec3(*wo)};
-      const double value =
-          visit_lobe(c.kind, shape, [&](const auto& lobe) { return lobe.eval(a); });
+      const double value = visit_lobe(c.kind, shape, [&](const auto& lobe) { return lobe.eval(a); });
       const double exact = eval(c, wi, *wo);
       EXPECT_NEAR(value, exact, 1e-3 * exact + 1e-6) << text(c);
     }

@@ -1,9 +1,10 @@
 // Which cells of a table were measured, and how far from the normal.
 
-#include <gonio/brdf/table/measured_to.h>
-#include <gonio/brdf/formats/repair.h>
-#include <gonio/fitting/model/synth.h>
 #include <gtest/gtest.h>
+
+#include <gonio/brdf/formats/repair.h>
+#include <gonio/brdf/table/measured_to.h>
+#include <gonio/fitting/model/synth.h>
 
 #include "tests/support/table_files.h"
 
@@ -43,8 +44,7 @@ TEST(Measured, OriginsFollowThePolicies) {
   using O = CellOrigin;
   EXPECT_TRUE(cell_origins({K::valid, K::negative}, {}).empty());
   const std::vector<K> kinds = {K::valid, K::negative, K::nonfinite, K::missing, K::outside};
-  EXPECT_EQ(cell_origins(kinds, {}),
-            (std::vector<O>{O::measured, O::measured, O::made_up, O::made_up, O::outside}));
+  EXPECT_EQ(cell_origins(kinds, {}), (std::vector<O>{O::measured, O::measured, O::made_up, O::made_up, O::outside}));
   const CellPolicies zero{CellPolicy::zero, CellPolicy::zero, CellPolicy::zero};
   EXPECT_EQ(cell_origins(kinds, zero), cell_origins(kinds, {}));  // black is made up as well
   CellPolicies fill;
@@ -77,8 +77,7 @@ TEST(Measured, CompleteTablesAreMeasuredEverywhere) {
   std::mt19937 engine(3);
   for (const BrdfTable& table : tables) {
     EXPECT_NEAR(measured_to(table), 90 * degree, 1e-9);
-    for (int k = 0; k < 10000; ++k)
-      EXPECT_EQ(table.measured(random_direction(engine), random_direction(engine)), 1);
+    for (int k = 0; k < 10000; ++k) EXPECT_EQ(table.measured(random_direction(engine), random_direction(engine)), 1);
   }
 }
 

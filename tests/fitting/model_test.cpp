@@ -1,11 +1,12 @@
-#include <gonio/fitting/model/model.h>
-#include <gonio/mapping/base/error.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <string>
+
+#include <gtest/gtest.h>
+
+#include <gonio/fitting/model/model.h>
+#include <gonio/mapping/base/error.h>
 
 namespace gonio {
 namespace {
@@ -20,8 +21,7 @@ std::string message_of(const std::string& description) {
 }
 
 void expect_message(const std::string& description, const std::string& part) {
-  EXPECT_NE(message_of(description).find(part), std::string::npos)
-      << description << " -> " << message_of(description);
+  EXPECT_NE(message_of(description).find(part), std::string::npos) << description << " -> " << message_of(description);
 }
 
 TEST(ParseModel, ParametersFindTheirLobe) {
@@ -71,8 +71,7 @@ TEST(ParseModel, SaysWhatIsWrong) {
 }
 
 TEST(Describe, ReadsBackToTheSameBits) {
-  for (const char* text :
-       {"default", "oren_nayar:sigma=0.1/0.2/0.3+student_t:gamma=3,eta=0.3333333333333333,k=2"}) {
+  for (const char* text : {"default", "oren_nayar:sigma=0.1/0.2/0.3+student_t:gamma=3,eta=0.3333333333333333,k=2"}) {
     const LobeModel a = parse_model(text), b = parse_model(describe(a));
     EXPECT_EQ(describe(a), describe(b));
     const glm::dvec3 wi(0.6, 0, 0.8), wo(-0.48, 0.36, 0.8);
@@ -130,18 +129,16 @@ TEST(ModelJson, SaysWhatIsWrong) {
   expect(changed("\"version\": 1", "\"version\": \"1\""), "version is \"1\"; expected 1");
   expect(changed("\"lobes\"", "\"no_lobes\""), "no member 'lobes'");
   expect(changed("\"lobe\": \"ggx\"", "\"lobe\": \"gxx\""), "lobes[0].lobe is 'gxx'");
-  expect(
-      changed("\"alpha\": {\n          \"value\": 0.25", "\"alpha\": {\n          \"value\": -1"),
-      "alpha.value is -1");
-  expect(changed("\"alpha\": {\n          \"value\": 0.25",
-                 "\"alpha\": {\n          \"value\": \"a\""),
+  expect(changed("\"alpha\": {\n          \"value\": 0.25", "\"alpha\": {\n          \"value\": -1"),
+         "alpha.value is -1");
+  expect(changed("\"alpha\": {\n          \"value\": 0.25", "\"alpha\": {\n          \"value\": \"a\""),
          "expected a number");
 }
 
 TEST(ModelDescription, EachParameterOnce) {
   EXPECT_NO_THROW(parse_model("ggx:alpha=0.1,F0=0.2+ggx:alpha=0.3,F0=0.4"));
-  for (const char* text : {"ggx:alpha=0.1,alpha=0.2", "ggx:F0=0.1,f0=0.1", "lambert:albedo=0.2,albedo=0.4", "lambert:albedo=0.1,alpha=0.1+ggx:alpha=0.1",
-                           "ggx:eta=0.2,k=3,k=3"}) {
+  for (const char* text : {"ggx:alpha=0.1,alpha=0.2", "ggx:F0=0.1,f0=0.1", "lambert:albedo=0.2,albedo=0.4",
+                           "lambert:albedo=0.1,alpha=0.1+ggx:alpha=0.1", "ggx:eta=0.2,k=3,k=3"}) {
     try {
       parse_model(text);
       ADD_FAILURE() << text;
@@ -153,8 +150,7 @@ TEST(ModelDescription, EachParameterOnce) {
 
 TEST(LoadModel, FileOrError) {
   EXPECT_THROW(load_model("/nonexistent/fit.json"), Error);
-  const std::filesystem::path path =
-      std::filesystem::path(testing::TempDir()) / "gonio_model_test.json";
+  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "gonio_model_test.json";
   std::ofstream(path) << to_json(parse_model("default"));
   EXPECT_EQ(describe(load_model(path)), describe(parse_model("default")));
   std::filesystem::remove(path);
@@ -163,15 +159,13 @@ TEST(LoadModel, FileOrError) {
 TEST(Snippets, ExistWhereTheModelDoes) {
   const LobeModel paint = parse_model("ggx+lambert:alpha=0.2,F0=0.1,albedo=0.3");
   const std::string pbrt = pbrt_snippet(paint), mitsuba = mitsuba_snippet(paint);
-  EXPECT_NE(pbrt.find("\"float roughness\" 0.2 \"bool remaproughness\" false"), std::string::npos)
-      << pbrt;
+  EXPECT_NE(pbrt.find("\"float roughness\" 0.2 \"bool remaproughness\" false"), std::string::npos) << pbrt;
   // 0.1 and 0.3 add up to 0.4: both blended reflectances are 0.4, at weights 1/4 and 3/4.
   EXPECT_NE(pbrt.find("\"diffuse\" \"rgb reflectance\" [0.4 0.4 0.4]"), std::string::npos) << pbrt;
   EXPECT_NE(pbrt.find("\"float amount\" 0.75"), std::string::npos) << pbrt;
   EXPECT_NE(mitsuba.find("<float name=\"alpha\" value=\"0.2\"/>"), std::string::npos) << mitsuba;
   EXPECT_NE(mitsuba.find("<float name=\"weight\" value=\"0.75\"/>"), std::string::npos) << mitsuba;
-  EXPECT_NE(pbrt_snippet(parse_model("ggx:eta=0.2,k=3")).find("\"rgb eta\" [0.2 0.2 0.2]"),
-            std::string::npos);
+  EXPECT_NE(pbrt_snippet(parse_model("ggx:eta=0.2,k=3")).find("\"rgb eta\" [0.2 0.2 0.2]"), std::string::npos);
   // A plain rgb above 1 is refused by Mitsuba.
   EXPECT_NE(mitsuba_snippet(parse_model("ggx:eta=0.2,k=3"))
                 .find("<spectrum name=\"k\" type=\"srgb\"><rgb name=\"color\" value=\"3, 3, 3\"/>"

@@ -1,8 +1,8 @@
-#include <gonio/fitting/model/parse_json.h>
-
-#include <gonio/mapping/base/error.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <gonio/fitting/model/parse_json.h>
+#include <gonio/mapping/base/error.h>
 
 namespace gonio {
 namespace {
@@ -35,15 +35,18 @@ TEST(ParseJson, NestingHasALimit) {
   for (const auto& [open, close] : {std::pair("[", "]"), std::pair("{\"a\":", "}")}) {
     EXPECT_EQ(error_of(nested(max_json_depth, open, close)), "none");
     for (const std::size_t depth : {max_json_depth + 1, std::size_t(100000), std::size_t(10000000)})
-      EXPECT_EQ(error_of(nested(depth, open, "")), "a.json: found objects or arrays more than 64 deep, expected fewer inside each other");
+      EXPECT_EQ(error_of(nested(depth, open, "")),
+                "a.json: found objects or arrays more than 64 deep, expected fewer inside each other");
   }
-  EXPECT_EQ(error_of("[" + nested(max_json_depth - 1, "[", "]") + "," + nested(max_json_depth - 1, "[", "]") + "]"), "none");
+  EXPECT_EQ(error_of("[" + nested(max_json_depth - 1, "[", "]") + "," + nested(max_json_depth - 1, "[", "]") + "]"),
+            "none");
 }
 
 TEST(ParseJson, EveryMemberOnce) {
   EXPECT_EQ(error_of(R"({"a": {"b": 1}, "b": [{"a": 1}, {"a": 2}]})"), "none");
   EXPECT_EQ(error_of(R"({"a": 1, "a": 1})"), "a.json: a: found twice, expected once");
-  EXPECT_EQ(error_of(R"({"a": [0, {"b": {"c": 1, "d": {}, "c": 2}}]})"), "a.json: a[1].b.c: found twice, expected once");
+  EXPECT_EQ(error_of(R"({"a": [0, {"b": {"c": 1, "d": {}, "c": 2}}]})"),
+            "a.json: a[1].b.c: found twice, expected once");
   EXPECT_EQ(error_of(R"([[], {"x": 0, "\u0078": 1}])"), "a.json: [1].x: found twice, expected once");
 }
 
@@ -68,7 +71,8 @@ TEST(Shown, IsShortAndOfWholeCharacters) {
   EXPECT_EQ(shown({1, 2.5, "x"}), "[1,2.5,\"x\"]");
   const std::string long_text = shown(std::string(100, 'x'));
   EXPECT_EQ(long_text, "\"" + std::string(36, 'x') + "...");
-  EXPECT_EQ(shown("x" + std::string(20, 'x') + "\xf0\x9f\x98\x80\xf0\x9f\x98\x80\xf0\x9f\x98\x80\xf0\x9f\x98\x80\xf0\x9f\x98\x80"),
+  EXPECT_EQ(shown("x" + std::string(20, 'x') +
+                  "\xf0\x9f\x98\x80\xf0\x9f\x98\x80\xf0\x9f\x98\x80\xf0\x9f\x98\x80\xf0\x9f\x98\x80"),
             "\"x" + std::string(20, 'x') + "\xf0\x9f\x98\x80\xf0\x9f\x98\x80\xf0\x9f\x98\x80...");
 }
 

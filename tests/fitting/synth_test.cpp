@@ -1,8 +1,9 @@
-#include <gonio/fitting/model/synth.h>
-#include <gonio/mapping/base/error.h>
+#include <cmath>
+
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <gonio/fitting/model/synth.h>
+#include <gonio/mapping/base/error.h>
 
 namespace gonio {
 namespace {
@@ -42,8 +43,7 @@ TEST(SynthesizeGrid, NoiseHasItsSigmaAndSeed) {
   const float exact = static_cast<float>(0.5 / pi<double>);
   SynthOptions options;
   options.noise_sigma = 0.02;
-  const MbsdfFile a = synthesize_mbsdf(model, 20, 40, options),
-                 b = synthesize_mbsdf(model, 20, 40, options);
+  const MbsdfFile a = synthesize_mbsdf(model, 20, 40, options), b = synthesize_mbsdf(model, 20, 40, options);
   EXPECT_EQ(a.values, b.values);
   options.seed = 2;
   EXPECT_NE(a.values, synthesize_mbsdf(model, 20, 40, options).values);
@@ -66,8 +66,7 @@ TEST(Synthesize, HolesBeyondTheMeasuredAngle) {
   for (int i = 0; i < 9; ++i) {
     for (int o = 0; o < 9; ++o) {
       const float value = grid.values[((i * 9 + o) * 4 + 2) * 3];
-      EXPECT_EQ(std::isnan(value), i >= 6 || o >= 6)
-          << i << " " << o;  // centres at 5, 15, ... degrees
+      EXPECT_EQ(std::isnan(value), i >= 6 || o >= 6) << i << " " << o;  // centres at 5, 15, ... degrees
     }
   }
   EXPECT_NO_THROW(MbsdfTable{grid});

@@ -1,11 +1,11 @@
-#include <gonio/brdf/ndf/image/disk_image_file.h>
-#include <gonio/brdf/exr/stack_file.h>
-#include <gonio/fitting/model/model.h>
-#include <gonio/mapping/stack/packed_stack.h>
-
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+
+#include <gonio/brdf/exr/stack_file.h>
+#include <gonio/brdf/ndf/image/disk_image_file.h>
+#include <gonio/fitting/model/model.h>
+#include <gonio/mapping/stack/packed_stack.h>
 
 #include "tests/support/light_cases.h"
 #include "tests/support/table_files.h"
@@ -46,7 +46,8 @@ int main(int argc, char** argv) {
   write(folder / "rgl" / "two", make_rgl({1, 1, 1}, true, 2).bytes());
   write(folder / "mbsdf" / "scalar", make_mbsdf(0, 2, 3, std::vector<float>(12, 0.3f)));
   write(folder / "mbsdf" / "rgb", make_mbsdf(1, 2, 2, std::vector<float>(24, 0.3f)));
-  write(folder / "mbsdf" / "transmission", make_mbsdf(0, 2, 3, std::vector<float>(12, 0.3f), "MBSDF_DATA_TRANSMISSION=\n"));
+  write(folder / "mbsdf" / "transmission",
+        make_mbsdf(0, 2, 3, std::vector<float>(12, 0.3f), "MBSDF_DATA_TRANSMISSION=\n"));
 
   gonio::StackFile stack;
   stack.name = "corpus";
@@ -77,8 +78,7 @@ int main(int argc, char** argv) {
   write(folder / "light" / "commas.ies",
         "IESNA91\nTilt = include\n1 2\n0 90\n1 0,5\n1 1,000 1 3 2 1 2 -0,5 0 0\n1 1 10\n0 45 90\n0 180\n"
         "1,5 1,25 0\n1,5 1,2 0\n");
-  write(folder / "light" / "type_b.ies",
-        "TILT=NONE\n1 -1 1 3 2 2 2 0 0 0\n1 1 10\n-90 0 90\n0 90\n1 2 3\n2 3 4\n");
+  write(folder / "light" / "type_b.ies", "TILT=NONE\n1 -1 1 3 2 2 2 0 0 0\n1 1 10\n-90 0 90\n0 90\n1 2 3\n2 3 4\n");
   std::string stored = "a\n1\n3\n3\n90\n2\n90\n\n\n\n\n\n";
   for (int k = 0; k < 13; ++k) stored += "1,5\n";
   stored += "1\n1\nl\n1000,5\n\n\n10\n";
@@ -90,18 +90,23 @@ int main(int argc, char** argv) {
   write(folder / "fit" / "metal", fit("student_t:eta=0.2/0.3/0.4,k=3+oren_nayar"));
   write(folder / "manifest" / "two", R"({"format": "gonio scene", "version": 1, "materials": [
     {"name": "a", "file": "/proc/self/exe", "share": 2, "incidence": [0, 1, 5]}, {"name": "b", "file": "/proc/self/exe", "share": 1}]})");
-  write(folder / "scene" / "all", R"({"camera": {"position": [0, -6, 3], "target": [0, 0, 1], "up": [0, 0, 1], "vertical_fov": 25, "resolution": [64, 32]},
+  write(
+      folder / "scene" / "all",
+      R"({"camera": {"position": [0, -6, 3], "target": [0, 0, 1], "up": [0, 0, 1], "vertical_fov": 25, "resolution": [64, 32]},
     "environment": {"sky": {"sun": [0, 1, 1], "radius": 2.5, "radiance": 300}, "turn": 90, "scale": 1},
     "materials": {"a": {"albedo": [0.5, 0.4, 0.3], "two_sided": true}, "b": {"albedo": 0.2}},
     "objects": [{"shape": "preview", "material": "a", "scale": [1, 2, 3], "rotate": [90, 0, 0], "translate": [0, 0, 1]},
                 {"shape": "square", "material": "b", "emission": [1, 2, 3]}], "lights": []})");
-  write(folder / "scene" / "file", R"({"environment": {"constant": 1}, "materials": {"a": {"file": "a.bsdf", "sampling": "half"}},
+  write(folder / "scene" / "file",
+        R"({"environment": {"constant": 1}, "materials": {"a": {"file": "a.bsdf", "sampling": "half"}},
     "objects": [{"file": "a.ply", "material": "a"}], "lights": [{"file": "a.ies", "position": [0, 0, 1], "scale": 2}]})");
 
   const std::string vertices = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
   const std::string faces = "element face 1\nproperty list uchar uint vertex_indices\nend_header\n";
-  write(folder / "ply" / "ascii", "ply\nformat ascii 1.0\ncomment one\n" + vertices + faces + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n");
-  std::string binary = "ply\nformat binary_little_endian 1.0\n" + vertices + "property list uchar short marks\n" + faces;
+  write(folder / "ply" / "ascii",
+        "ply\nformat ascii 1.0\ncomment one\n" + vertices + faces + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n");
+  std::string binary =
+      "ply\nformat binary_little_endian 1.0\n" + vertices + "property list uchar short marks\n" + faces;
   for (const float x : {0.0f, 1.0f, 2.0f, 3.0f}) {
     for (const float p : {x, x * x, 1.0f}) append(binary, p);
     append(binary, std::uint8_t(0));
@@ -109,6 +114,8 @@ int main(int argc, char** argv) {
   append(binary, std::uint8_t(4));
   for (const std::uint32_t v : {0u, 1u, 3u, 2u}) append(binary, v);
   write(folder / "ply" / "binary", binary);
-  write(folder / "obj" / "quad", "# one\nmtllib a.mtl\no a\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nusemtl b\nf 1/1/1 2/1/1 \\\n3//1 -1/-1/-1\n");
+  write(folder / "obj" / "quad",
+        "# one\nmtllib a.mtl\no a\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nusemtl b\nf 1/1/1 2/1/1 "
+        "\\\n3//1 -1/-1/-1\n");
   return 0;
 }

@@ -1,8 +1,8 @@
-#include <gonio/fitting/model/model.h>
-#include <gonio/mapping/base/error.h>
-
 #include <cmath>
 #include <cstdlib>
+
+#include <gonio/fitting/model/model.h>
+#include <gonio/mapping/base/error.h>
 
 // Bytes to a fit.json: what loads has lobes, is written and read back the same, and reflects no less than nothing.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,11 +1,11 @@
+#include <cmath>
+#include <cstdlib>
+
 #include <gonio/mapping/base/error.h>
 #include <gonio/mapping/light/files/eulumdat.h>
 #include <gonio/mapping/light/files/ies.h>
 #include <gonio/mapping/light/files/luminaire.h>
 #include <gonio/mapping/light/files/text_scanner.h>
-
-#include <cmath>
-#include <cstdlib>
 
 // Bytes to a luminaire file of either format; what can be used has a flux, and can be written as either.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

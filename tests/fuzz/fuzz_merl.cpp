@@ -1,6 +1,6 @@
-#include <gonio/brdf/formats/merl.h>
-
 #include <cstdlib>
+
+#include <gonio/brdf/formats/merl.h>
 
 // Bytes to a MERL file: nothing but problems may come of it, and a usable one holds all its cells.
 // (Tables are not made of it: that takes 34 MB of bytes, which no fuzzer writes.)

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include <gonio/mapping/base/error.h>
+
 #include "tools/render/mesh/mesh.h"
 
 namespace gonio::fuzz {

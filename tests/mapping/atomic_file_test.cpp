@@ -1,6 +1,7 @@
+#include <gtest/gtest.h>
+
 #include <gonio/mapping/base/atomic_file.h>
 #include <gonio/mapping/base/error.h>
-#include <gtest/gtest.h>
 
 #include "tests/support/table_files.h"
 

@@ -1,7 +1,3 @@
-#include <gonio/brdf/proof/gtest.h>
-
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -9,9 +5,12 @@
 #include <set>
 #include <string>
 
-#include <gonio/brdf/build/stack/build_stack.h>
+#include <gtest/gtest.h>
+
 #include <gonio/brdf/build/compact/colour_of_table.h>
+#include <gonio/brdf/build/stack/build_stack.h>
 #include <gonio/brdf/proof/gallery.h>
+#include <gonio/brdf/proof/gtest.h>
 #include <gonio/brdf/value/luminance.h>
 #include <gonio/mapping/base/error.h>
 
@@ -30,7 +29,9 @@ StackGrid two_diagrams(Chart chart = Chart::outgoing, Azimuth azimuth = Azimuth:
     d.r = {0, 0.1, 0.35, 0.6, 0.65, 0.9, 1};
     for (const double phi : d.phi)
       for (const double r : d.r)
-        d.density.push_back(std::exp(-8 * std::pow(r - theta, 2)) * (1.1 - 0.5 * std::cos(phi) + theta * std::cos(2 * phi)) + 0.02 + (theta > 0.5 ? 0 : r));
+        d.density.push_back(std::exp(-8 * std::pow(r - theta, 2)) *
+                                (1.1 - 0.5 * std::cos(phi) + theta * std::cos(2 * phi)) +
+                            0.02 + (theta > 0.5 ? 0 : r));
     if (azimuth == Azimuth::full)
       for (std::size_t j = 0; j < d.r.size(); ++j) d.at(d.phi.size() - 1, j) = d.at(0, j);
     stack.theta_i.push_back(theta);
@@ -80,7 +81,8 @@ TEST(Blend, NeedsSharedLines) {
 // square, by differences of directions alone.
 TEST(Charts, PdfIsTheJacobianOfTheMap) {
   for (const Chart chart : charts) {
-    for (const Interpolation interpolation : {Interpolation::nearest, Interpolation::displacement, Interpolation::blend}) {
+    for (const Interpolation interpolation :
+         {Interpolation::nearest, Interpolation::displacement, Interpolation::blend}) {
       const Stack<long double> stack(two_diagrams(chart), interpolation);
       std::mt19937 engine(1);
       std::uniform_real_distribution<double> random;
@@ -88,14 +90,16 @@ TEST(Charts, PdfIsTheJacobianOfTheMap) {
       int good = 0;
       constexpr int count = 2000;
       for (int k = 0; k < count; ++k) {
-        const long double theta_i = 0.2 + random(engine), u = h + (1 - 2 * h) * random(engine), v = h + (1 - 2 * h) * random(engine);
+        const long double theta_i = 0.2 + random(engine), u = h + (1 - 2 * h) * random(engine),
+                          v = h + (1 - 2 * h) * random(engine);
         const auto s = stack.sample(theta_i, u, v);
         const auto a = (stack.sample(theta_i, u + h, v).wo - stack.sample(theta_i, u - h, v).wo) / (2 * h);
         const auto b = (stack.sample(theta_i, u, v + h).wo - stack.sample(theta_i, u, v - h).wo) / (2 * h);
         const Vec3<long double> n(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
         good += std::abs(s.pdf * std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z) - 1) < 1e-3L;
       }
-      EXPECT_GT(good, count - 20) << to_string(chart) << ' ' << to_string(interpolation);  // lines bend the map within h
+      EXPECT_GT(good, count - 20) << to_string(chart) << ' '
+                                  << to_string(interpolation);  // lines bend the map within h
     }
   }
 }

@@ -1,9 +1,9 @@
-#include <gonio/mapping/charts/concentric.h>
+#include <limits>
+#include <random>
 
 #include <gtest/gtest.h>
 
-#include <limits>
-#include <random>
+#include <gonio/mapping/charts/concentric.h>
 
 namespace gonio {
 namespace {

@@ -1,10 +1,9 @@
-#include <gonio/mapping/diagram/diagram_fit.h>
+#include <cmath>
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include <gonio/mapping/base/error.h>
+#include <gonio/mapping/diagram/diagram_fit.h>
 
 namespace gonio {
 namespace {
@@ -39,7 +38,8 @@ TEST(Fit, FindsANarrowLobe) {
 
 TEST(Fit, StopsAtTheTolerance) {
   const auto g = [](Polar<double> p) { return lobe(p, 0.1); };
-  const DiagramGrid coarse = fit_diagram(g, Azimuth::half, {40, 40, 0.02}), fine = fit_diagram(g, Azimuth::half, {40, 40, 0.002});
+  const DiagramGrid coarse = fit_diagram(g, Azimuth::half, {40, 40, 0.02}),
+                    fine = fit_diagram(g, Azimuth::half, {40, 40, 0.002});
   EXPECT_LT(coarse.density.size(), fine.density.size());
   EXPECT_LT(fine.density.size(), 40u * 40u);
   EXPECT_LT(relvar(coarse, g), 0.02);

@@ -1,11 +1,10 @@
-#include <gonio/mapping/diagram/diagram.h>
-
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <random>
 
+#include <gtest/gtest.h>
+
 #include <gonio/mapping/base/error.h>
+#include <gonio/mapping/diagram/diagram.h>
 
 namespace gonio {
 namespace {
@@ -104,9 +103,9 @@ TEST(Diagram, MassAndPdfIntegral) {
 // Zero regions: no draw lands where the density is zero, nothing is NaN, u and v may be 0 and 1.
 TEST(Diagram, ZeroRegions) {
   DiagramGrid grid = random_grid(Azimuth::half, 6, 5, 3);
-  for (std::size_t i = 0; i < 6; ++i) grid.at(i, 4) = 0;               // the horizon
+  for (std::size_t i = 0; i < 6; ++i) grid.at(i, 4) = 0;                  // the horizon
   for (std::size_t i = 1; i < 3; ++i) grid.at(i, 1) = grid.at(i, 2) = 0;  // a patch (Fig. 6d)
-  for (std::size_t j = 0; j < 5; ++j) grid.at(4, j) = 0;               // a meridian
+  for (std::size_t j = 0; j < 5; ++j) grid.at(4, j) = 0;                  // a meridian
   const Diagram<float> d(grid);
   for (const float u : {0.0f, 0x1p-24f, 0.25f, 0.5f, 0.77f, 1 - 0x1p-24f, 1.0f})
     for (const float v : {0.0f, 0x1p-24f, 0.3f, 0.5f, 0.9f, 1 - 0x1p-24f, 1.0f}) {
@@ -128,7 +127,8 @@ TEST(Diagram, ZeroRegions) {
 
 TEST(Diagram, TwelveDecades) {
   DiagramGrid grid = random_grid(Azimuth::half, 8, 8, 6);
-  for (std::size_t k = 0; k < grid.density.size(); ++k) grid.density[k] = std::pow(10.0, -12.0 * static_cast<double>(k % 7) / 6);
+  for (std::size_t k = 0; k < grid.density.size(); ++k)
+    grid.density[k] = std::pow(10.0, -12.0 * static_cast<double>(k % 7) / 6);
   round_trip<double>(grid, 1e-13);
   const Diagram<float> d(grid);
   for (int k = 0; k <= 1000; ++k) {

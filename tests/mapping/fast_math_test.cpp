@@ -1,8 +1,9 @@
-#include <gonio/mapping/numeric/fast_math.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <random>
+
+#include <gtest/gtest.h>
+
+#include <gonio/mapping/numeric/fast_math.h>
 
 namespace gonio {
 namespace {

@@ -1,9 +1,9 @@
-#include <gonio/mapping/charts/half_vector.h>
+#include <cmath>
+#include <random>
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <random>
+#include <gonio/mapping/charts/half_vector.h>
 
 namespace gonio {
 namespace {
@@ -24,9 +24,12 @@ Polar<double> any_point(std::mt19937& engine) {
   std::uniform_real_distribution<double> random;
   const double t = random(engine), phi = pi<double> * (2 * random(engine) - 1);
   switch (engine() % 4) {
-    case 0: return {std::pow(10.0, -6 * t), phi};
-    case 1: return {1 - std::pow(10.0, -6 * t), phi};
-    default: return {t, phi};
+    case 0:
+      return {std::pow(10.0, -6 * t), phi};
+    case 1:
+      return {1 - std::pow(10.0, -6 * t), phi};
+    default:
+      return {t, phi};
   }
 }
 
@@ -44,7 +47,8 @@ TEST(HalfVector, FollowsItsDefinition) {
       const Wide theta_max = std::atan2(ci, -si * std::cos(Wide(p.phi))) / 2;
       const Wide m = 2 * std::sin(theta_max / 2) * std::sin(theta_max / 2);
       const Wide q = Wide(p.r) * p.r, x = q / (a * (1 - q) + q / m), theta_h = 2 * std::asin(std::sqrt(x / 2));
-      const Vec3<Wide> h(std::sin(theta_h) * std::cos(Wide(p.phi)), std::sin(theta_h) * std::sin(Wide(p.phi)), std::cos(theta_h));
+      const Vec3<Wide> h(std::sin(theta_h) * std::cos(Wide(p.phi)), std::sin(theta_h) * std::sin(Wide(p.phi)),
+                         std::cos(theta_h));
       const Vec3<Wide> wo = 2 * dot(wi, h) * h - wi;
       const auto found = chart.direction({p.r, p.phi});
       ASSERT_LT(largest_difference(found.wo, wo), 1e-15L) << theta_i << ' ' << p.r << ' ' << p.phi;
@@ -79,7 +83,8 @@ TEST(HalfVector, JacobianIsTheAreaRatio) {
       const Vec3<Wide> n(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
       const Wide area = std::sqrt(dot(n, n)) / (2 * r);
       const Wide found = chart.direction({r, phi}).jacobian;
-      ASSERT_NEAR(static_cast<double>(found / area), 1, 1e-6) << theta_i << ' ' << static_cast<double>(r) << ' ' << static_cast<double>(phi);
+      ASSERT_NEAR(static_cast<double>(found / area), 1, 1e-6)
+          << theta_i << ' ' << static_cast<double>(r) << ' ' << static_cast<double>(phi);
       ASSERT_NEAR(static_cast<double>(chart.disk(at(0, 0)).jacobian / found), 1, 1e-9);
     }
   }
@@ -121,7 +126,8 @@ Errors errors(double theta_i) {
     e.length = std::max(e.length, std::abs(std::sqrt(dot(wo, wo)) - 1));
     e.jacobian = std::max(e.jacobian, std::abs(found.jacobian / right.jacobian - 1));
     // Back and forth again, in T throughout.
-    e.round_trip = std::max(e.round_trip, largest_difference(Vec3<Wide>(chart.direction(chart.disk(found.wo).at).wo), wo));
+    e.round_trip =
+        std::max(e.round_trip, largest_difference(Vec3<Wide>(chart.direction(chart.disk(found.wo).at).wo), wo));
     EXPECT_TRUE(found.wo.z > 0 || p.r == 1);
   }
   return e;
@@ -129,7 +135,8 @@ Errors errors(double theta_i) {
 
 TEST(HalfVector, PrecisionAsStated) {
   for (const double theta_i : angles) {
-    for (const auto& [e, epsilon] : {std::pair(errors<float>(theta_i), 0x1p-23L), std::pair(errors<double>(theta_i), 0x1p-52L)}) {
+    for (const auto& [e, epsilon] :
+         {std::pair(errors<float>(theta_i), 0x1p-23L), std::pair(errors<double>(theta_i), 0x1p-52L)}) {
       EXPECT_LE(e.direction, 8 * epsilon) << theta_i;
       EXPECT_LE(e.length, 8 * epsilon) << theta_i;
       EXPECT_LE(e.jacobian, 16 * epsilon) << theta_i;
@@ -147,7 +154,8 @@ TEST(HalfVector, FiniteAtAndBeyondGrazing) {
         ASSERT_TRUE(std::isfinite(d.jacobian) && d.jacobian > 0) << r << ' ' << phi;
         ASSERT_TRUE(d.wo.z > 0 || r == 1);
         const auto p = chart.disk(d.wo);
-        ASSERT_TRUE(p.at.r >= 0 && p.at.r <= 1 && std::isfinite(p.at.phi) && p.jacobian > 0 && std::isfinite(p.jacobian));
+        ASSERT_TRUE(p.at.r >= 0 && p.at.r <= 1 && std::isfinite(p.at.phi) && p.jacobian > 0 &&
+                    std::isfinite(p.jacobian));
       }
   }
 }

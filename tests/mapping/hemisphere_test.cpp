@@ -1,8 +1,8 @@
-#include <gonio/mapping/charts/hemisphere.h>
+#include <random>
 
 #include <gtest/gtest.h>
 
-#include <random>
+#include <gonio/mapping/charts/hemisphere.h>
 
 namespace gonio {
 namespace {

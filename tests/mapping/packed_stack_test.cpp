@@ -1,15 +1,14 @@
-#include <gonio/mapping/stack/packed_stack.h>
-
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <random>
 #include <string>
 
-#include <gonio/mapping/numeric/code16.h>
+#include <gtest/gtest.h>
+
 #include <gonio/mapping/base/error.h>
+#include <gonio/mapping/numeric/code16.h>
+#include <gonio/mapping/stack/packed_stack.h>
 
 namespace gonio {
 namespace {
@@ -51,7 +50,8 @@ StackGrid lobe(Chart chart, int incident, int meridians, int parallels, double w
     for (const double phi : d.phi)
       for (const double r : d.r) {
         const double x = r * std::cos(phi) + at, y = r * std::sin(phi);
-        d.density.push_back(3 * (k + 1) * (std::exp(-(x * x + y * y) / (width * width)) + base * (1.1 + std::cos(phi) * r)));
+        d.density.push_back(3 * (k + 1) *
+                            (std::exp(-(x * x + y * y) / (width * width)) + base * (1.1 + std::cos(phi) * r)));
       }
     stack.theta_i.push_back(theta);
     stack.diagrams.push_back(std::move(d));
@@ -62,7 +62,8 @@ StackGrid lobe(Chart chart, int incident, int meridians, int parallels, double w
 constexpr float angles[] = {0, 0.05f, 0.3f, 0.75f, 1.3f, 1.5f, 1.57f};
 
 class Packed : public testing::TestWithParam<Chart> {};
-INSTANTIATE_TEST_SUITE_P(Charts, Packed, testing::ValuesIn(charts), [](const auto& chart) { return std::string(to_string(chart.param)); });
+INSTANTIATE_TEST_SUITE_P(Charts, Packed, testing::ValuesIn(charts),
+                         [](const auto& chart) { return std::string(to_string(chart.param)); });
 
 // A block is not full, full, and one cell more; and the fewest lines.
 constexpr int parallels_tried[] = {2, 3, 8, 9, 10, 17, 33, 40};
@@ -141,7 +142,8 @@ TEST_P(Packed, IntegratesToOne) {
     constexpr int side = 1000;  // midpoints in phi and r^2
     for (int i = 0; i < side; ++i)
       for (int j = 0; j < side; ++j) {
-        const Polar<float> p{std::sqrt((static_cast<float>(j) + 0.5f) / side), pi<float> * (2 * (static_cast<float>(i) + 0.5f) / side - 1)};
+        const Polar<float> p{std::sqrt((static_cast<float>(j) + 0.5f) / side),
+                             pi<float> * (2 * (static_cast<float>(i) + 0.5f) / side - 1)};
         sum += packed.pdf(theta_i, polar_to_direction(p));
       }
     EXPECT_NEAR(sum * 2 * pi<double> / side / side, 1, 1e-4) << theta_i;
@@ -169,7 +171,8 @@ TEST(PackedStack, BytesOfACrossing) {
   const StackGrid grid = lobe(Chart::half, 32, 40, 40);
   const PackedStack packed(grid);
   EXPECT_LT(static_cast<double>(packed.bytes()) / (32 * 40 * 40), 2.9);
-  EXPECT_LT(2.9 * static_cast<double>(packed.bytes()), static_cast<double>(Stack<float>(grid, Interpolation::blend).bytes()));
+  EXPECT_LT(2.9 * static_cast<double>(packed.bytes()),
+            static_cast<double>(Stack<float>(grid, Interpolation::blend).bytes()));
 }
 
 TEST(PackedStack, OneDiagramServesEveryAngle) {

@@ -1,13 +1,13 @@
-#include <gonio/mapping/diagram/diagram.h>
-#include <gonio/mapping/charts/hemisphere.h>
-
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
 #include <vector>
+
+#include <gtest/gtest.h>
+
+#include <gonio/mapping/charts/hemisphere.h>
+#include <gonio/mapping/diagram/diagram.h>
 
 namespace gonio {
 namespace {

@@ -1,10 +1,10 @@
-#include <gonio/mapping/diagram/radial_cell.h>
-
-#include <gtest/gtest.h>
-
 #include <limits>
 #include <random>
 #include <vector>
+
+#include <gtest/gtest.h>
+
+#include <gonio/mapping/diagram/radial_cell.h>
 
 namespace gonio {
 namespace {
@@ -28,7 +28,9 @@ void backward_stable() {
   for (const auto& cell : cells<T>()) {
     for (int k = 0; k < 500; ++k) {
       const double x = random(engine);
-      const T tau = k == 0 ? T(1) : k == 1 ? std::numeric_limits<T>::epsilon() : static_cast<T>(k % 2 ? x : x * x * x * x);
+      const T tau = k == 0   ? T(1)
+                    : k == 1 ? std::numeric_limits<T>::epsilon()
+                             : static_cast<T>(k % 2 ? x : x * x * x * x);
       if (!(tau > 0)) continue;
       const T s = cell.invert(tau);
       ASSERT_GE(s, 0);
@@ -72,7 +74,8 @@ TEST(RadialCell, ClosedForms) {
 TEST(RadialCell, MassIsEquation9) {
   const RadialCell<double> c{0.3, 0.25, 2, 5};
   const double x0 = 0.3, x1 = 0.55;
-  const double paper = 5 * (x1 * x1 - x0 * x0) + (2.0 - 5) / (x1 - x0) * (x1 * x1 * x1 / 3 - x1 * x0 * x0 + 2 * x0 * x0 * x0 / 3);
+  const double paper =
+      5 * (x1 * x1 - x0 * x0) + (2.0 - 5) / (x1 - x0) * (x1 * x1 * x1 / 3 - x1 * x0 * x0 + 2 * x0 * x0 * x0 / 3);
   EXPECT_NEAR(c.mass(1), paper, 1e-14);
 }
 
@@ -85,7 +88,9 @@ TEST(RadialCell, TextbookCardanFails) {
     const float p = -b * b / 3, r = 2 * b * b * b / 27 + constant, m = 2 * std::sqrt(-p / 3);
     float best = 1e9f;
     for (int k = 0; k < 3; ++k) {
-      const float t = m * std::cos((std::acos(std::clamp(3 * r / (p * m), -1.0f, 1.0f)) - 2 * 3.14159265f * static_cast<float>(k)) / 3);
+      const float t =
+          m *
+          std::cos((std::acos(std::clamp(3 * r / (p * m), -1.0f, 1.0f)) - 2 * 3.14159265f * static_cast<float>(k)) / 3);
       const float x = t - b / 3;
       if (std::abs(x - (x0 + x1) / 2) < std::abs(best - (x0 + x1) / 2)) best = x;
     }

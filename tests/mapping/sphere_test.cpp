@@ -1,13 +1,14 @@
-#include <gonio/brdf/proof/statistics/chi_square.h>
-#include <gonio/brdf/proof/coherence.h>
-#include <gonio/mapping/base/error.h>
-#include <gonio/mapping/light/emission.h>
-#include <gonio/mapping/sphere/sphere.h>
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <random>
+
+#include <gtest/gtest.h>
+
+#include <gonio/brdf/proof/coherence.h>
+#include <gonio/brdf/proof/statistics/chi_square.h>
+#include <gonio/mapping/base/error.h>
+#include <gonio/mapping/light/emission.h>
+#include <gonio/mapping/sphere/sphere.h>
 
 #include "tests/support/light_cases.h"
 
@@ -16,8 +17,7 @@ namespace {
 
 using testing::rad;
 
-SphereGrid grid_of(const std::vector<double>& phi, const std::vector<double>& theta, unsigned seed,
-                   double zeros = 0) {
+SphereGrid grid_of(const std::vector<double>& phi, const std::vector<double>& theta, unsigned seed, double zeros = 0) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(0, 1);
   SphereGrid grid{phi, theta, {}};
@@ -40,16 +40,14 @@ SphereGrid random_grid(unsigned seed = 1, double zeros = 0) {
 /// Draws of a sampler against its pdf, in bins of the sphere that are adapted to it.
 /// @param sample (u, v) -> direction.
 template <class Sample>
-proof::ChiSquare chi_square(const Sample& sample, const proof::Density& pdf, std::uint64_t draws,
-                            unsigned seed) {
+proof::ChiSquare chi_square(const Sample& sample, const proof::Density& pdf, std::uint64_t draws, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(0, 1);
   const proof::Draw draw = [&](std::uint64_t) {
     const double u = uniform(random), v = uniform(random);
     return glm::vec3(sample(u, v));
   };
-  return proof::chi_square(draw, pdf, proof::Bins::adapted(pdf, 61, 61, proof::Domain::sphere),
-                           draws);
+  return proof::chi_square(draw, pdf, proof::Bins::adapted(pdf, 61, 61, proof::Domain::sphere), draws);
 }
 
 /// Bends, tears and folds of the map of a luminaire; there is no incident direction.
@@ -66,8 +64,7 @@ TEST(SphereDiagram, PdfIntegratesToOneAndDrawsFollowIt) {
   for (unsigned seed : {1u, 2u, 3u}) {
     const SphereDiagram<double> map(random_grid(seed, seed == 3 ? 0.3 : 0));
     const auto pdf = [&](const glm::vec3& w) { return map.pdf(map.place_of(Vec3<double>(w))); };
-    const auto result = chi_square([&](double u, double v) { return map.direction(map.at(u, v)); },
-                                   pdf, 1000000, seed);
+    const auto result = chi_square([&](double u, double v) { return map.direction(map.at(u, v)); }, pdf, 1000000, seed);
     EXPECT_NEAR(result.pdf_integral, 1, 1e-4);
     EXPECT_TRUE(result.passed(proof::sidak(0.01, 3))) << result.summary();
   }
@@ -79,8 +76,7 @@ TEST(SphereDiagram, WrongPdfIsFoundOut) {
   const auto wrong = [&](const glm::vec3& w) {
     return map.pdf(map.place_of(Vec3<double>(w))) * (1 + 0.05 * double(w.x));
   };
-  const auto result = chi_square([&](double u, double v) { return map.direction(map.at(u, v)); },
-                                 wrong, 1000000, 1);
+  const auto result = chi_square([&](double u, double v) { return map.direction(map.at(u, v)); }, wrong, 1000000, 1);
   EXPECT_FALSE(result.passed(1e-6)) << result.summary();
 }
 
@@ -94,8 +90,7 @@ void check_inverse(const SphereGrid& grid, double tolerance) {
     const T u = static_cast<T>(uniform(random)), v = static_cast<T>(uniform(random));
     const auto place = map.at(u, v);
     const Vec3<T> w = map.direction(place);
-    EXPECT_NEAR(double(w.x * w.x + w.y * w.y + w.z * w.z), 1,
-                8 * double(std::numeric_limits<T>::epsilon()));
+    EXPECT_NEAR(double(w.x * w.x + w.y * w.y + w.z * w.z), 1, 8 * double(std::numeric_limits<T>::epsilon()));
     const SquarePoint<T> back = map.square_of(map.place_of(w));
     worst = std::max({worst, double(std::abs(back.u - u)), double(std::abs(back.v - v))});
     EXPECT_NEAR(double(map.pdf(map.place_of(w))), double(map.pdf(place)), 20 * tolerance);
@@ -192,8 +187,7 @@ bool ends_abruptly(const LightDiagram& d) {
 
 /// Everything that is asked of the sampling of one luminaire; @param tests how many chi-square
 /// tests share the significance.
-void check_emission(const LightDiagram& diagram, unsigned seed, bool fine_enough, int tests,
-                    bool report = false) {
+void check_emission(const LightDiagram& diagram, unsigned seed, bool fine_enough, int tests, bool report = false) {
   const EmissionSampler<float> sampler(diagram);
   const auto sample = [&](double u, double v) {
     return sampler.sample(static_cast<float>(u), static_cast<float>(v)).direction;
@@ -213,8 +207,7 @@ void check_emission(const LightDiagram& diagram, unsigned seed, bool fine_enough
     const auto s = exact.sample(u, v);
     ASSERT_GT(s.pdf, 0);
     // weight * pdf is the intensity of the diagram in that direction.
-    mismatch =
-        std::max(mismatch, std::abs(s.weight * s.pdf - diagram.intensity(s.direction)) / largest);
+    mismatch = std::max(mismatch, std::abs(s.weight * s.pdf - diagram.intensity(s.direction)) / largest);
     EXPECT_NEAR(exact.pdf(s.direction) / s.pdf, 1, 1e-6);
     const SquarePoint<double> back = exact.invert(s.direction);
     // Compared on the sphere: where hardly any mass lies, a tiny angle is a large step in the
@@ -225,8 +218,7 @@ void check_emission(const LightDiagram& diagram, unsigned seed, bool fine_enough
   EXPECT_LT(inverse, 1e-6);
   // The map has no choice but to jump over what is dark: it is continuous where no such gap lies in
   // between, and on the same luminaire with light everywhere.
-  const auto as_it_is = coherence(exact),
-             lit = coherence(EmissionSampler<double>(with_floor(diagram)));
+  const auto as_it_is = coherence(exact), lit = coherence(EmissionSampler<double>(with_floor(diagram)));
   EXPECT_EQ(as_it_is.folds, 0u);
   EXPECT_EQ(lit.folds, 0u);
   if (!ends_abruptly(diagram)) {
@@ -247,8 +239,8 @@ void check_emission(const LightDiagram& diagram, unsigned seed, bool fine_enough
     std::printf(
         "  p %.3f  jumps %2d  flux %+.4f %%  relvar: uniform %.3g, texels %.3g, r-linear %.1g, "
         "gamma-linear %.2g\n",
-        chi2.p, static_cast<int>(as_it_is.tears), 100 * (quality[3].flux / flux(diagram) - 1),
-        quality[0].relvar, quality[1].relvar, quality[2].relvar, quality[3].relvar);
+        chi2.p, static_cast<int>(as_it_is.tears), 100 * (quality[3].flux / flux(diagram) - 1), quality[0].relvar,
+        quality[1].relvar, quality[2].relvar, quality[3].relvar);
 }
 
 TEST(Emission, GeneratedLuminaires) {
@@ -284,8 +276,7 @@ TEST(Emission, PhotometricFiles) {
     SCOPED_TRACE(path.string());
     const LightDiagram diagram = load_light(path).diagram;
     std::printf("%-34s", path.filename().string().c_str());
-    check_emission(diagram, ++seed, diagram.gamma.size() >= 19, static_cast<int>(files.size()),
-                   true);
+    check_emission(diagram, ++seed, diagram.gamma.size() >= 19, static_cast<int>(files.size()), true);
   }
 }
 

@@ -1,12 +1,11 @@
-#include <gonio/mapping/stack/stack.h>
-
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <random>
 
+#include <gtest/gtest.h>
+
 #include <gonio/mapping/base/error.h>
 #include <gonio/mapping/numeric/monotone_root.h>
+#include <gonio/mapping/stack/stack.h>
 
 namespace gonio {
 namespace {
@@ -51,8 +50,11 @@ void round_trip(Interpolation interpolation, Azimuth azimuth, double bound, doub
       ASSERT_GT(s.pdf, 0);
       ASSERT_GT(s.wo.z, 0);
       ASSERT_NEAR(static_cast<double>(s.wo.x * s.wo.x + s.wo.y * s.wo.y + s.wo.z * s.wo.z), 1, 1e-6);
-      const auto near_pdf = [&](T pdf) { return std::abs(static_cast<double>(pdf - s.pdf)) <= pdf_bound * static_cast<double>(s.pdf) + floor; };
-      ASSERT_TRUE(near_pdf(stack.pdf(theta_i, s.wo))) << to_string(interpolation) << " at " << angle << ' ' << u << ' ' << v;
+      const auto near_pdf = [&](T pdf) {
+        return std::abs(static_cast<double>(pdf - s.pdf)) <= pdf_bound * static_cast<double>(s.pdf) + floor;
+      };
+      ASSERT_TRUE(near_pdf(stack.pdf(theta_i, s.wo)))
+          << to_string(interpolation) << " at " << angle << ' ' << u << ' ' << v;
       const auto back = stack.invert(theta_i, s.wo);
       ASSERT_TRUE(back);
       ASSERT_TRUE(near_pdf(back->pdf)) << to_string(interpolation) << " at " << angle << ' ' << u << ' ' << v;
@@ -129,7 +131,8 @@ TEST(Stack, ContinuousInTheta) {
   for (const double u : {0.1, 0.6})
     for (const double v : {0.2, 0.9})
       for (const double theta : {0.2, 0.55, 0.9, 1.25}) {
-        const auto at = stack.sample(theta, u, v), below = stack.sample(theta - 1e-9, u, v), above = stack.sample(theta + 1e-9, u, v);
+        const auto at = stack.sample(theta, u, v), below = stack.sample(theta - 1e-9, u, v),
+                   above = stack.sample(theta + 1e-9, u, v);
         for (int c = 0; c < 3; ++c) {
           EXPECT_NEAR(at.wo[c], below.wo[c], 1e-7);
           EXPECT_NEAR(at.wo[c], above.wo[c], 1e-7);
@@ -194,7 +197,8 @@ TEST(Stack, RebuildsBitByBitAndCountsItsMemory) {
   std::size_t floats = a.theta_i().size();
   for (std::size_t k = 0; k < a.diagrams().size(); ++k) {
     EXPECT_EQ(a.diagrams()[k].grid().density, b.diagrams()[k].grid().density);
-    const std::size_t m = static_cast<std::size_t>(a.diagrams()[k].meridians()), n = static_cast<std::size_t>(a.diagrams()[k].parallels());
+    const std::size_t m = static_cast<std::size_t>(a.diagrams()[k].meridians()),
+                      n = static_cast<std::size_t>(a.diagrams()[k].parallels());
     floats += 2 * m * n + 2 * m + n;
   }
   EXPECT_GE(a.bytes(), floats * sizeof(float));
@@ -229,7 +233,11 @@ TEST(MonotoneRoot, FewSteps) {
     check([&](float x) { return Slope<float>{x < root ? -1.0f : 1.0f, 0}; }, root, 1e-6f);
     check([&](float x) { return Slope<float>{std::cbrt(x - root), std::pow(x - root, -2.0f / 3) / 3}; }, root, 1e-6f);
     check([&](float x) { return Slope<float>{std::pow(x - root, 5.0f), 5 * std::pow(x - root, 4.0f)}; }, root, 1e-2f);
-    check([&](float x) { return Slope<float>{x < root ? 1e-3f * (x - root) : 1e3f * (x - root), x < root ? 1e-3f : 1e3f}; }, root, 1e-6f);
+    check(
+        [&](float x) {
+          return Slope<float>{x < root ? 1e-3f * (x - root) : 1e3f * (x - root), x < root ? 1e-3f : 1e3f};
+        },
+        root, 1e-6f);
   }
 }
 

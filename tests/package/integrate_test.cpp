@@ -1,21 +1,23 @@
 // The adapters that docs/integrate.md shows, as the renderers would call them.
 
-#include <gonio/brdf/build/make_bsdf.h>
-#include "docs/examples/mitsuba_bsdf.h"
-#include "docs/examples/pbrt_bxdf.h"
-#include <gonio/fitting/model/synth.h>
-#include <gtest/gtest.h>
-
 #include <memory>
 #include <random>
 #include <type_traits>
+
+#include <gtest/gtest.h>
+
+#include <gonio/brdf/build/make_bsdf.h>
+#include <gonio/fitting/model/synth.h>
+
+#include "docs/examples/mitsuba_bsdf.h"
+#include "docs/examples/pbrt_bxdf.h"
 
 namespace gonio {
 namespace {
 
 std::shared_ptr<const BrdfTable> table_of(const char* description) {
-  return std::make_shared<const BrdfTable>(
-      MbsdfTable(synthesize_mbsdf(parse_model(description), 32, 48)), BrdfTable::Info{});
+  return std::make_shared<const BrdfTable>(MbsdfTable(synthesize_mbsdf(parse_model(description), 32, 48)),
+                                           BrdfTable::Info{});
 }
 
 Bsdf make_material() {
@@ -44,8 +46,7 @@ Direction random_direction(std::mt19937& engine, bool below) {
 
 // pbrt gives the memory of a BxDF back without its destructor, and makes one at every hit.
 TEST(Integrate, PbrtBxDFIsAPointer) {
-  static_assert(std::is_trivially_copyable_v<GonioBxDF> &&
-                std::is_trivially_destructible_v<GonioBxDF>);
+  static_assert(std::is_trivially_copyable_v<GonioBxDF> && std::is_trivially_destructible_v<GonioBxDF>);
   static_assert(sizeof(GonioBxDF) == sizeof(void*));
   auto table = table_of("lambert:albedo=0.5");
   const std::weak_ptr<const BrdfTable> alive = table;
@@ -55,8 +56,7 @@ TEST(Integrate, PbrtBxDFIsAPointer) {
     const GonioMaterial owner(make_bsdf(std::move(table), coarse));
     pbrt::ScratchBuffer buffer;
     for (int hit = 0; hit < 3; ++hit) {
-      EXPECT_TRUE(pbrt::GetBSDF(owner, buffer)
-                      .Sample_f({0, 0, 1}, 0, {0.5f, 0.5f}, pbrt::TransportMode::Radiance));
+      EXPECT_TRUE(pbrt::GetBSDF(owner, buffer).Sample_f({0, 0, 1}, 0, {0.5f, 0.5f}, pbrt::TransportMode::Radiance));
     }
     EXPECT_EQ(alive.use_count(), 1) << "hits own nothing";
   }

@@ -1,15 +1,13 @@
 #pragma once
 
-#include <gonio/brdf/batch/batch_stack.h>
-
-#include <gtest/gtest.h>
-
-#include <gonio/brdf/batch/kernels/targets.h>
-
-#include <hwy/highway.h>
-
 #include <cstdint>
 #include <string>
+
+#include <gtest/gtest.h>
+#include <hwy/highway.h>
+
+#include <gonio/brdf/batch/batch_stack.h>
+#include <gonio/brdf/batch/kernels/targets.h>
 
 namespace gonio {
 

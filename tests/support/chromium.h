@@ -1,8 +1,5 @@
 #pragma once
 
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -11,9 +8,10 @@
 #include <vector>
 
 #include <fcntl.h>
-#include <poll.h>
-
 #include <nlohmann/json.hpp>
+#include <poll.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 namespace gonio {
 
@@ -26,10 +24,21 @@ class Chromium {
     int commands[2], answers[2];
     if (pipe2(commands, O_CLOEXEC) != 0 || pipe2(answers, O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
     const std::string data = "--user-data-dir=" + profile.string();
-    const std::vector<const char*> arguments = {"chromium", "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
-                                                "--disable-background-networking", "--disable-component-update", "--disable-sync",
-                                                "--disable-dev-shm-usage", "--hide-scrollbars", "--remote-debugging-pipe", data.c_str(),
-                                                "about:blank", nullptr};
+    const std::vector<const char*> arguments = {"chromium",
+                                                "--headless",
+                                                "--no-sandbox",
+                                                "--disable-gpu",
+                                                "--disable-quic",
+                                                "--no-first-run",
+                                                "--disable-background-networking",
+                                                "--disable-component-update",
+                                                "--disable-sync",
+                                                "--disable-dev-shm-usage",
+                                                "--hide-scrollbars",
+                                                "--remote-debugging-pipe",
+                                                data.c_str(),
+                                                "about:blank",
+                                                nullptr};
     child_ = fork();
     if (child_ == 0) {
       setpgid(0, 0);
@@ -66,7 +75,8 @@ class Chromium {
 
   /// Sends a command and waits for its answer; events that come before it are kept.
   nlohmann::json call(const std::string& method, const nlohmann::json& parameters) {
-    nlohmann::json command = {{"id", ++id_}, {"method", method}, {"params", parameters.is_null() ? nlohmann::json::object() : parameters}};
+    nlohmann::json command = {
+        {"id", ++id_}, {"method", method}, {"params", parameters.is_null() ? nlohmann::json::object() : parameters}};
     if (!session_.empty()) command["sessionId"] = session_;
     std::string text = command.dump();
     text.push_back('\0');
@@ -88,8 +98,10 @@ class Chromium {
 
   /// The value of an expression; a promise is awaited.
   nlohmann::json evaluate(const std::string& expression) {
-    const auto result = call("Runtime.evaluate", {{"expression", expression}, {"returnByValue", true}, {"awaitPromise", true}});
-    if (result.contains("exceptionDetails")) throw std::runtime_error(expression + ": " + result["exceptionDetails"].dump());
+    const auto result =
+        call("Runtime.evaluate", {{"expression", expression}, {"returnByValue", true}, {"awaitPromise", true}});
+    if (result.contains("exceptionDetails"))
+      throw std::runtime_error(expression + ": " + result["exceptionDetails"].dump());
     return result["result"].value("value", nlohmann::json());
   }
 

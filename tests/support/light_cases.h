@@ -1,14 +1,15 @@
 #pragma once
 
-#include <gonio/mapping/light/files/luminaire.h>
-
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <glm/geometric.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
+
+#include <glm/geometric.hpp>
+
+#include <gonio/mapping/light/files/luminaire.h>
 
 namespace gonio::testing {
 
@@ -31,9 +32,8 @@ LightDiagram tabulate(int c_cells, int gamma_cells, double gamma_to, const Funct
 /// I = 1000/pi cos(gamma) cd, 1000 lm, every degree.
 inline Luminaire lambertian() {
   Luminaire light;
-  light.diagram = tabulate(1, 90, pi<double> / 2, [](double, double g) {
-    return g > rad(89.999) ? 0.0 : 1000 / pi<double> * std::cos(g);
-  });
+  light.diagram = tabulate(1, 90, pi<double> / 2,
+                           [](double, double g) { return g > rad(89.999) ? 0.0 : 1000 / pi<double> * std::cos(g); });
   light.symmetry = LightSymmetry::rotational;
   light.name = "Lambertian, 1000 lm";
   light.lamp_lumens = 1000;
@@ -51,8 +51,7 @@ inline Luminaire asymmetric() {
   const Vec3<double> down = asymmetric_peak(), up = LightFrame{}.direction(rad(200), rad(130));
   light.diagram = tabulate(36, 36, pi<double>, [&](double c, double g) {
     const Vec3<double> w = LightFrame{}.direction(c, g);
-    return 1000 * std::exp(8 * (glm::dot(w, down) - 1)) +
-           250 * std::exp(12 * (glm::dot(w, up) - 1));
+    return 1000 * std::exp(8 * (glm::dot(w, down) - 1)) + 250 * std::exp(12 * (glm::dot(w, up) - 1));
   });
   light.name = "Asymmetric";
   light.lamp_lumens = 2000;
@@ -74,9 +73,8 @@ inline Luminaire narrow_spot() {
 /// Light upwards only.
 inline Luminaire uplight() {
   Luminaire light = asymmetric();
-  light.diagram = tabulate(24, 36, pi<double>, [](double c, double g) {
-    return g > rad(91) ? -std::cos(g) * (2 + std::cos(c)) * 50 : 0.0;
-  });
+  light.diagram = tabulate(
+      24, 36, pi<double>, [](double c, double g) { return g > rad(91) ? -std::cos(g) * (2 + std::cos(c)) * 50 : 0.0; });
   return light;
 }
 
@@ -140,8 +138,7 @@ inline std::vector<std::filesystem::path> photometric_files() {
   const std::filesystem::path folder = std::filesystem::path(data) / "photometric";
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
     const std::string extension = entry.path().extension().string();
-    if ((extension == ".ies" || extension == ".ldt") &&
-        entry.path().filename() != "test_file_format_error.ies")
+    if ((extension == ".ies" || extension == ".ldt") && entry.path().filename() != "test_file_format_error.ies")
       files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <gonio/mapping/charts/hemisphere.h>
-
 #include <cmath>
+
+#include <gonio/mapping/charts/hemisphere.h>
 
 namespace gonio::test {
 

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <png.h>
-
 #include <array>
 #include <cstring>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include <png.h>
 
 namespace gonio::test {
 

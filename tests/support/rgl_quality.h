@@ -1,11 +1,12 @@
 #pragma once
 
-#include <gonio/brdf/formats/rgl/rgl.h>
-#include <gonio/brdf/resample/rgl_resample.h>
-
 #include <cmath>
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+
+#include <gonio/brdf/formats/rgl/rgl.h>
+#include <gonio/brdf/resample/rgl_resample.h>
 
 namespace gonio::test {
 

@@ -1,21 +1,22 @@
 #pragma once
 
-#include <gonio/brdf/formats/mbsdf.h>
-#include <gonio/brdf/formats/merl.h>
-
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <glm/vec3.hpp>
 #include <limits>
 #include <numeric>
 #include <random>
 #include <sstream>
 #include <string>
 #include <vector>
+
+#include <glm/vec3.hpp>
+
+#include <gonio/brdf/formats/mbsdf.h>
+#include <gonio/brdf/formats/merl.h>
 
 namespace gonio::test {
 
@@ -25,8 +26,7 @@ constexpr double pi = 3.14159265358979323846;
 class TemporaryFolder {
  public:
   TemporaryFolder() {
-    path_ = std::filesystem::temp_directory_path() /
-            ("gonio-test-" + std::to_string(std::random_device{}()));
+    path_ = std::filesystem::temp_directory_path() / ("gonio-test-" + std::to_string(std::random_device{}()));
     std::filesystem::create_directories(path_);
   }
   ~TemporaryFolder() { std::filesystem::remove_all(path_); }
@@ -41,8 +41,7 @@ class TemporaryFolder {
 };
 
 inline void write_file(const std::filesystem::path& path, const std::string& bytes) {
-  std::ofstream(path, std::ios::binary)
-      .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
 }
 
 inline std::string file_bytes(const std::filesystem::path& path) {
@@ -59,8 +58,7 @@ inline std::filesystem::path test_data() {
 }
 
 inline glm::vec3 direction(double theta, double phi) {
-  return glm::vec3(glm::dvec3(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
-                              std::cos(theta)));
+  return glm::vec3(glm::dvec3(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)));
 }
 
 /// Uniform in solid angle over the upper hemisphere.
@@ -102,11 +100,8 @@ struct TensorBuilder {
   };
   std::vector<Field> fields;
 
-  void add(const std::string& name, const std::vector<std::uint64_t>& shape,
-           const std::vector<float>& values) {
-    fields.push_back(
-        {name, 10, shape,
-         std::string(reinterpret_cast<const char*>(values.data()), values.size() * 4)});
+  void add(const std::string& name, const std::vector<std::uint64_t>& shape, const std::vector<float>& values) {
+    fields.push_back({name, 10, shape, std::string(reinterpret_cast<const char*>(values.data()), values.size() * 4)});
   }
   void add_octets(const std::string& name, const std::string& octets) {
     fields.push_back({name, 1, {octets.size()}, octets});
@@ -167,8 +162,7 @@ inline TensorBuilder make_rgl(const glm::vec3& colour = {0.4f, 0.8f, 1.2f}, bool
 
 /// An MBSDF file with one part; `values` in the order of the file.
 inline std::string make_mbsdf(std::uint32_t type, std::uint32_t n_theta, std::uint32_t n_phi,
-                              const std::vector<float>& values,
-                              const std::string& part = "MBSDF_DATA_REFLECTION=\n") {
+                              const std::vector<float>& values, const std::string& part = "MBSDF_DATA_REFLECTION=\n") {
   std::string bytes = "NVIDIA ARC MBSDF V1\n" + part;
   append(bytes, type);
   append(bytes, n_theta);

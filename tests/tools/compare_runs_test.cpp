@@ -1,13 +1,15 @@
 #include "tools/render/compare/compare_runs.h"
 
-#include <gonio/fitting/model/synth.h>
-#include <gonio/mapping/base/error.h>
-#include "tools/render/image/difference.h"
-#include "tools/render/scene/read_scene.h"
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <numeric>
+
+#include <gtest/gtest.h>
+
+#include <gonio/fitting/model/synth.h>
+#include <gonio/mapping/base/error.h>
+
+#include "tools/render/image/difference.h"
+#include "tools/render/scene/read_scene.h"
 
 namespace gonio {
 namespace {
@@ -20,8 +22,8 @@ Scene plate(const char* model = "ggx:alpha=0.15,F0=0.9") {
     "materials": {"a": {"albedo": 0.5}}, "objects": [{"shape": "square", "material": "a", "scale": [1, 3, 1], "translate": [0.9, 0, 0]}]})"),
                            "test", {});
   scene.materials[0].bsdf = nullptr;
-  scene.materials[0].table =
-      std::make_shared<const BrdfTable>(MbsdfTable(synthesize_mbsdf(parse_model(model), 24, 48)), BrdfTable::Info{"test", "test", "mbsdf", "", 0, {}});
+  scene.materials[0].table = std::make_shared<const BrdfTable>(MbsdfTable(synthesize_mbsdf(parse_model(model), 24, 48)),
+                                                               BrdfTable::Info{"test", "test", "mbsdf", "", 0, {}});
   return scene;
 }
 
@@ -32,7 +34,7 @@ TEST(CompareMethods, GivesCurvesAndFindsCosineSamplingWorse) {
   options.seconds = 0.15;
   options.reference_seconds = 1;
   const Comparison c = compare_methods(scene, options);
-  EXPECT_GT(c.pixels, 30u);   // the plate fills a part of the view
+  EXPECT_GT(c.pixels, 30u);  // the plate fills a part of the view
   EXPECT_LT(c.pixels, 144u);
   ASSERT_EQ(c.runs.size(), 4u);
   std::vector<double> at_equal_samples;

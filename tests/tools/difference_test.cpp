@@ -31,7 +31,8 @@ TEST(Difference, BlackAgreesWithBlack) {
 TEST(Difference, TooBrightIsRedAndTooDarkIsBlue) {
   const RgbImage reference{4, 1, std::vector<glm::vec3>(4, glm::vec3(2))};
   const RgbImage image{4, 1, {glm::vec3(2.5f), glm::vec3(9), glm::vec3(1.5f), glm::vec3(0)}};
-  EXPECT_EQ(test::png_pixels(difference_png(image, reference)), (Pixels{{217, 128, 128}, {179, 0, 0}, {128, 128, 217}, {0, 0, 179}}));
+  EXPECT_EQ(test::png_pixels(difference_png(image, reference)),
+            (Pixels{{217, 128, 128}, {179, 0, 0}, {128, 128, 217}, {0, 0, 179}}));
 }
 
 }  // namespace

@@ -1,13 +1,15 @@
 #include "tools/render/image/environment.h"
 
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
 #include <gonio/brdf/table/table.h>
 #include <gonio/mapping/base/error.h>
 #include <gonio/mapping/charts/hemisphere.h>
-#include "tools/render/trace/sobol.h"
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <glm/geometric.hpp>
+#include "tools/render/trace/sobol.h"
 
 namespace gonio {
 namespace {

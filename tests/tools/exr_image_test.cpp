@@ -1,10 +1,12 @@
 #include "tools/render/image/exr_image.h"
 
-#include <gonio/brdf/ndf/image/disk_image_file.h>
-#include <gonio/brdf/exr/stack_file.h>
-#include <gonio/mapping/base/error.h>
-#include "tests/support/table_files.h"
 #include <gtest/gtest.h>
+
+#include <gonio/brdf/exr/stack_file.h>
+#include <gonio/brdf/ndf/image/disk_image_file.h>
+#include <gonio/mapping/base/error.h>
+
+#include "tests/support/table_files.h"
 
 namespace gonio {
 namespace {
@@ -54,12 +56,15 @@ TEST(ExrImage, OtherFilesOfGonioAreNamed) {
   stack.bsdf.diagrams.diagrams = {diagram};
   stack.bsdf.colour = Colour({0}, 2, std::vector<glm::vec3>(2, glm::vec3(0.5f)));
   save_stack(folder / "stack.exr", stack);
-  EXPECT_NE(message_of(folder / "stack.exr").find("stack.exr: content: found a stack file, expected a picture"), std::string::npos)
+  EXPECT_NE(message_of(folder / "stack.exr").find("stack.exr: content: found a stack file, expected a picture"),
+            std::string::npos)
       << message_of(folder / "stack.exr");
   DiskImage disk(4);
   disk.values.assign(16, 1.0f);
   save_disk_image(folder / "d.exr", disk, "D");
-  EXPECT_NE(message_of(folder / "d.exr").find("d.exr: content: found an image of a normal distribution, expected a picture"), std::string::npos)
+  EXPECT_NE(
+      message_of(folder / "d.exr").find("d.exr: content: found an image of a normal distribution, expected a picture"),
+      std::string::npos)
       << message_of(folder / "d.exr");
 }
 

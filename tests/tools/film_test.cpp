@@ -1,11 +1,12 @@
 #include "tools/render/trace/film.h"
 
-#include "tests/support/table_files.h"
-#include "tools/render/scene/read_scene.h"
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <cstring>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/table_files.h"
+#include "tools/render/scene/read_scene.h"
 
 namespace gonio {
 namespace {
@@ -20,7 +21,8 @@ Scene small_scene() {
 }
 
 bool same(const RgbImage& a, const RgbImage& b) {
-  return a.pixels.size() == b.pixels.size() && std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(glm::vec3)) == 0;
+  return a.pixels.size() == b.pixels.size() &&
+         std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(glm::vec3)) == 0;
 }
 
 TEST(Film, DependsNeitherOnThreadsNorOnTheDivisionOfSamples) {

@@ -1,19 +1,21 @@
 // Runs `gonio fit`, and the verbs that read what it writes, as a user does.
 
-#include <gonio/mapping/base/bytes.h>
-#include <gonio/brdf/exr/stack_file.h>
-#include <gonio/brdf/table/table.h>
-#include <gonio/fitting/model/synth.h>
-#include <gonio/mapping/base/error.h>
-#include "tests/support/table_files.h"
-#include <gtest/gtest.h>
-#include <sys/wait.h>
-
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <sstream>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <sys/wait.h>
+
+#include <gonio/brdf/exr/stack_file.h>
+#include <gonio/brdf/table/table.h>
+#include <gonio/fitting/model/synth.h>
+#include <gonio/mapping/base/bytes.h>
+#include <gonio/mapping/base/error.h>
+
+#include "tests/support/table_files.h"
 
 namespace gonio {
 namespace {
@@ -39,8 +41,7 @@ class FitToolTest : public testing::Test {
     const std::string command =
         "cd '" + folder_.path().string() + "' && '" GONIO_TOOL "' " + arguments + " >.out 2>.err";
     const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_bytes(path(".out")),
-            read_bytes(path(".err"))};
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_bytes(path(".out")), read_bytes(path(".err"))};
   }
 
   std::string expect_ok(const std::string& arguments) const {
@@ -58,15 +59,13 @@ class FitToolTest : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 TEST_F(FitToolTest, WritesTheModelThatMadeTheTable) {
   write_table("a.mbsdf", one_lobe);
   const std::string out = expect_ok("fit a.mbsdf --model ggx+lambert -o fit.json");
-  for (const char* part : {"converged after", "1.ggx.alpha", "relative L1", "to 75 deg", "beyond",
-                           "written: fit.json"}) {
+  for (const char* part :
+       {"converged after", "1.ggx.alpha", "relative L1", "to 75 deg", "beyond", "written: fit.json"}) {
     EXPECT_TRUE(contains(out, part)) << part << "\n" << out;
   }
   const LobeModel model = load_model(path("fit.json"));
@@ -90,8 +89,7 @@ TEST_F(FitToolTest, WritesTheModelThatMadeTheTable) {
 TEST_F(FitToolTest, AutoTakesAsManyLobesAsHelp) {
   write_table("one.mbsdf", one_lobe);
   write_table("two.mbsdf", two_lobes);
-  EXPECT_TRUE(
-      contains(expect_ok("fit two.mbsdf -o two.json"), "the fewest within 10 % of the best"));
+  EXPECT_TRUE(contains(expect_ok("fit two.mbsdf -o two.json"), "the fewest within 10 % of the best"));
   EXPECT_GE(load_model(path("two.json")).specular_count(), 2);
   expect_ok("fit two.mbsdf --model ggx+lambert -o one.json");
   EXPECT_EQ(load_model(path("one.json")).specular_count(), 1);
@@ -111,8 +109,7 @@ TEST_F(FitToolTest, OptionsReachTheFit) {
   EXPECT_NEAR(alphas("separate.json").b, 0.6, 0.05);
   EXPECT_TRUE(contains(expect_ok("fit a.mbsdf --model ggx+lambert --cutoff 60"), "to 60 deg"));
   const std::string help = expect_ok("fit --help");
-  EXPECT_TRUE(contains(help, "--cutoff DEGREES [75]") || contains(help, "--cutoff DEGREES=75"))
-      << help;
+  EXPECT_TRUE(contains(help, "--cutoff DEGREES [75]") || contains(help, "--cutoff DEGREES=75")) << help;
 }
 
 // What the reader filled in is neither fitted nor compared, and info says what there is.
@@ -183,8 +180,7 @@ TEST_F(FitToolTest, RefusesWhatItCannotDo) {
   expect_ok("convert a.mbsdf a.exr --incident 3");
   expect_error("fit a.mbsdf --model nosuch -o x.json", "unknown lobe 'nosuch'");
   expect_error("fit a.mbsdf --cutoff 0 -o x.json", "--cutoff: found 0");
-  expect_error("fit a.mbsdf --channels many -o x.json",
-               "--channels: found 'many', expected one of shared, separate");
+  expect_error("fit a.mbsdf --channels many -o x.json", "--channels: found 'many', expected one of shared, separate");
   expect_error("fit a.mbsdf --starts -1 -o x.json", "starts");
   expect_error("fit a.mbsdf a.mbsdf -o x.json", "IN: found 2, expected one, or --table");
   expect_error("fit a.mbsdf -o x.json --table x.md", "-o: found one, expected none");
@@ -234,11 +230,14 @@ TEST_F(FitToolTest, EveryVerbRefusesHostileJson) {
   std::ofstream deep(path("deep.json"));
   for (int k = 0; k < 100000; ++k) deep << "{\"a\":";
   deep.close();
-  for (const auto& [file, part] : {std::pair("deep.json", "deep.json: found objects or arrays more than 64 deep"), std::pair("twice.json", "twice.json: name: found twice, expected once")}) {
+  for (const auto& [file, part] : {std::pair("deep.json", "deep.json: found objects or arrays more than 64 deep"),
+                                   std::pair("twice.json", "twice.json: name: found twice, expected once")}) {
     const std::string in = file;
-    for (const std::string& verb : {"info " + in, "fit " + in + " -o out.json", "report " + in + " -o out", "synth " + in + " -o out.binary",
-                                    "convert " + in + " out.exr", "convert --scene " + in + " --budget 1MiB -o out", "render " + in + " -o out.exr",
-                                    "render --material " + in + " -o out.exr", "compare " + in + " -o out", "report --merge " + in + " -o out"})
+    for (const std::string& verb :
+         {"info " + in, "fit " + in + " -o out.json", "report " + in + " -o out", "synth " + in + " -o out.binary",
+          "convert " + in + " out.exr", "convert --scene " + in + " --budget 1MiB -o out",
+          "render " + in + " -o out.exr", "render --material " + in + " -o out.exr", "compare " + in + " -o out",
+          "report --merge " + in + " -o out"})
       expect_error(verb, part);
     const Outcome run = execute("validate " + in);
     EXPECT_EQ(run.code, 1);
@@ -289,7 +288,8 @@ TEST_F(FitToolTest, ReportComparesLobesAndStacks) {
   }
   const std::string verdict = material["verdict"];
   EXPECT_TRUE(contains(verdict, "Sample it with ")) << verdict;
-  for (const char* file : {"report/report.md", "report/report.html"}) EXPECT_TRUE(contains(read_bytes(path(file)), verdict)) << file;
+  for (const char* file : {"report/report.md", "report/report.html"})
+    EXPECT_TRUE(contains(read_bytes(path(file)), verdict)) << file;
   EXPECT_GT(material["lobes_against_stack"]["equal_time_ratio"].get<double>(), 0);
   EXPECT_TRUE(contains(read_bytes(path("report/report.md")), "For this material a "));
 }
@@ -336,11 +336,13 @@ TEST_F(FitToolTest, ReportOfAMixture) {
 
 TEST_F(FitToolTest, MergeTakesReportsAlone) {
   const auto write = [&](const char* name, const std::string& materials, const std::string& lights = "[]") {
-    std::ofstream(path(name)) << "{\"gonio_version\": \"" GONIO_VERSION "\", \"machine\": 1, \"command\": 2, \"materials\": " << materials
-                              << ", \"lights\": " << lights << "}";
+    std::ofstream(path(name)) << "{\"gonio_version\": \"" GONIO_VERSION
+                                 "\", \"machine\": 1, \"command\": 2, \"materials\": "
+                              << materials << ", \"lights\": " << lights << "}";
   };
   write("number.json", "[{}, 5]");
-  expect_error("report --merge number.json -o all", "gonio report: number.json: materials[1]: found number, expected an object");
+  expect_error("report --merge number.json -o all",
+               "gonio report: number.json: materials[1]: found number, expected an object");
   write("light.json", "[]", "[[]]");
   expect_error("report --merge light.json -o all", "light.json: lights[0]: found array, expected an object");
   EXPECT_FALSE(std::filesystem::exists(path("all")));

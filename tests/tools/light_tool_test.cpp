@@ -1,13 +1,14 @@
 // Runs the verb light of the program GONIO_TOOL as a user does.
 
-#include <gonio/mapping/light/exr/light_exr.h>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cstdlib>
-#include <fstream>
-#include <iterator>
+#include <gonio/mapping/light/exr/light_exr.h>
 
 #include "tests/support/light_cases.h"
 
@@ -18,17 +19,15 @@ namespace fs = std::filesystem;
 
 class LightTool : public ::testing::Test {
  protected:
-  LightTool()
-      : folder_(fs::path(::testing::TempDir()) / ("light_tool_" + std::to_string(getpid()))) {
+  LightTool() : folder_(fs::path(::testing::TempDir()) / ("light_tool_" + std::to_string(getpid()))) {
     fs::create_directories(folder_);
-    std::ofstream(folder_ / "in.ldt", std::ios::binary)
-        << testing::eulumdat_text(testing::asymmetric());
+    std::ofstream(folder_ / "in.ldt", std::ios::binary) << testing::eulumdat_text(testing::asymmetric());
   }
   ~LightTool() override { fs::remove_all(folder_); }
 
   int run(const std::string& arguments) const {
-    const int status = std::system(
-        ("cd '" + folder_.string() + "' && '" GONIO_TOOL "' " + arguments + " >out 2>err").c_str());
+    const int status =
+        std::system(("cd '" + folder_.string() + "' && '" GONIO_TOOL "' " + arguments + " >out 2>err").c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
   std::string read(const std::string& name) const {
@@ -36,8 +35,7 @@ class LightTool : public ::testing::Test {
     return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
   }
   /// The program fails, prints one line on stderr that holds `text`, and leaves no file `output`.
-  void refused(const std::string& arguments, const std::string& text,
-               const std::string& output = "none") const {
+  void refused(const std::string& arguments, const std::string& text, const std::string& output = "none") const {
     EXPECT_EQ(run(arguments), 1) << arguments;
     const std::string error = read("err");
     EXPECT_NE(error.find(text), std::string::npos) << error;
@@ -66,15 +64,13 @@ TEST_F(LightTool, ConvertKeepsTheLight) {
 
 TEST_F(LightTool, ShowsAndMeasures) {
   ASSERT_EQ(run("light info in.ldt"), 0) << read("err");
-  EXPECT_NE(read("out").find("1000.00 cd at C 30, gamma 40 degrees"), std::string::npos)
-      << read("out");
+  EXPECT_NE(read("out").find("1000.00 cd at C 30, gamma 40 degrees"), std::string::npos) << read("out");
   ASSERT_EQ(run("light validate in.ldt"), 0) << read("err");
   EXPECT_NE(read("out").find("0 deviations"), std::string::npos) << read("out");
   ASSERT_EQ(run("light plot in.ldt p.svg --planes 30 --klm"), 0) << read("err");
   EXPECT_NE(read("p.svg").find("C30 right, C210 left"), std::string::npos);
   for (const std::string name : {"s.obj", "s.ply"}) {
-    ASSERT_EQ(run("light solid in.ldt " + name + " --rows 20 --filter two-plane"), 0)
-        << read("err");
+    ASSERT_EQ(run("light solid in.ldt " + name + " --rows 20 --filter two-plane"), 0) << read("err");
     EXPECT_GT(fs::file_size(folder_ / name), 1000u);
   }
   ASSERT_EQ(run("light sample in.ldt --draws 5"), 0) << read("err");
@@ -85,8 +81,7 @@ TEST_F(LightTool, ShowsAndMeasures) {
   ASSERT_EQ(run("report in.ldt -o folder"), 0) << read("err");
   EXPECT_NE(read("folder/report.md").find("goniometric mapping, corrected"), std::string::npos);
   const std::string json = read("folder/report.json");
-  for (const char* key :
-       {"\"lights\"", "\"uniform\"", "\"texels\"", "\"r_linear\"", "\"gamma_linear\""})
+  for (const char* key : {"\"lights\"", "\"uniform\"", "\"texels\"", "\"r_linear\"", "\"gamma_linear\""})
     EXPECT_NE(json.find(key), std::string::npos) << key;
 }
 
@@ -104,14 +99,12 @@ TEST_F(LightTool, UnitsAreThoseOfTheFile) {
 }
 
 TEST_F(LightTool, ValidateTellsInTheUnitOfTheFile) {
-  std::ofstream(folder_ / "uv.ies")
-      << "IESNA:LM-63-2002\n[_INTENSITYUNITS] mW/sr\n[_TOTALLUMINAIRELUMENS] "
-         "0.001\nTILT=NONE\n1 -1 1 3 3 1 2 0 0 0\n1 1 10\n0 45 90\n"
-         "0 90 180\n2e-4 1e-4 0\n1e-4 1e-4 0\n2e-4 1e-4 0\n";
+  std::ofstream(folder_ / "uv.ies") << "IESNA:LM-63-2002\n[_INTENSITYUNITS] mW/sr\n[_TOTALLUMINAIRELUMENS] "
+                                       "0.001\nTILT=NONE\n1 -1 1 3 3 1 2 0 0 0\n1 1 10\n0 45 90\n"
+                                       "0 90 180\n2e-4 1e-4 0\n1e-4 1e-4 0\n2e-4 1e-4 0\n";
   ASSERT_EQ(run("light validate uv.ies"), 0) << read("err");
   EXPECT_NE(read("out").find("0.0001 to 0.0002 mW/sr"), std::string::npos) << read("out");
-  EXPECT_NE(read("out").find(" mW by quadrature, expected 0.001 as"), std::string::npos)
-      << read("out");
+  EXPECT_NE(read("out").find(" mW by quadrature, expected 0.001 as"), std::string::npos) << read("out");
   EXPECT_EQ(read("out").find(" cd"), std::string::npos) << read("out");
 }
 
@@ -119,10 +112,9 @@ TEST_F(LightTool, ValidateTellsInTheUnitOfTheFile) {
 // that hold no light hold 0.
 TEST_F(LightTool, InfoSaysWhatTheFileHolds) {
   const auto file = [&](const std::string& angles, const std::string& values) {
-    std::ofstream(folder_ / "a.ies")
-        << "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 3 1 2 0 0 0\n1 1 10\n0 45 90\n"
-        << angles << "\n"
-        << values;
+    std::ofstream(folder_ / "a.ies") << "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 3 1 2 0 0 0\n1 1 10\n0 45 90\n"
+                                     << angles << "\n"
+                                     << values;
     EXPECT_EQ(run("light info a.ies"), 0) << read("err");
     return read("out");
   };
@@ -135,9 +127,7 @@ TEST_F(LightTool, InfoSaysWhatTheFileHolds) {
   out = file("90 180 270", "1e-3 2e-3 0\n1e-3 9e-4 0\n1e-3 1e-4 0\n");
   EXPECT_NE(out.find("symmetry: C0-C180\n"), std::string::npos) << out;
   EXPECT_NE(out.find("0.002 cd at C 180"), std::string::npos) << out;
-  EXPECT_NE(out.find("hint             the light is mirrored at the 90-270 plane"),
-            std::string::npos)
-      << out;
+  EXPECT_NE(out.find("hint             the light is mirrored at the 90-270 plane"), std::string::npos) << out;
   EXPECT_NE(out.find("--ies-zero 0"), std::string::npos) << out;
   EXPECT_NE(out.find("flux             0.003857 lm"), std::string::npos) << out;
 }
@@ -163,12 +153,10 @@ TEST_F(LightTool, OtherFilesAreNamedAsWhatTheyAre) {
   file("a.binary", std::string("\x5a\0\0\0\x5a\0\0\0\xb4\0\0\0", 12));
   file("fit.json", "{\"version\": 1}");
   file("pointer.ies", "version https://git-lfs.github.com/spec/v1\noid sha256:a\nsize 1\n");
-  ASSERT_EQ(run("light convert in.ldt image.exr --layout latlong --resolution 8"), 0)
-      << read("err");
+  ASSERT_EQ(run("light convert in.ldt image.exr --layout latlong --resolution 8"), 0) << read("err");
   for (const std::string verb : {"info", "convert", "plot", "sample", "compare"}) {
     const std::string out = verb == "convert" ? " x.ldt" : verb == "plot" ? " x.svg" : "";
-    refused("light " + verb + " a.bsdf" + out,
-            "a.bsdf: found a measured BRDF, RGL (gonio info");
+    refused("light " + verb + " a.bsdf" + out, "a.bsdf: found a measured BRDF, RGL (gonio info");
     refused("light " + verb + " a.mbsdf" + out, "a.mbsdf: found a measured BRDF, MBSDF");
     refused("light " + verb + " a.binary" + out, "a.binary: found a measured BRDF, MERL");
     refused("light " + verb + " fit.json" + out, "found a JSON file");
@@ -181,8 +169,10 @@ TEST_F(LightTool, OtherFilesAreNamedAsWhatTheyAre) {
 
 TEST_F(LightTool, AnInputIsNeverReplaced) {
   const std::string before = read("in.ldt");
-  for (const char* name : {"hard.ldt", "hard.svg", "hard.obj", "x.pbrt.exr"}) fs::create_hard_link(folder_ / "in.ldt", folder_ / name);
-  for (const char* arguments : {"convert in.ldt in.ldt", "convert in.ldt hard.ldt", "plot in.ldt hard.svg", "solid in.ldt hard.obj", "convert in.ldt x.pbrt"})
+  for (const char* name : {"hard.ldt", "hard.svg", "hard.obj", "x.pbrt.exr"})
+    fs::create_hard_link(folder_ / "in.ldt", folder_ / name);
+  for (const char* arguments : {"convert in.ldt in.ldt", "convert in.ldt hard.ldt", "plot in.ldt hard.svg",
+                                "solid in.ldt hard.obj", "convert in.ldt x.pbrt"})
     refused(std::string("light ") + arguments, "output: found the same file as in.ldt");
   EXPECT_EQ(read("in.ldt"), before);
   for (const char* name : {"hard.svg", "hard.obj"}) EXPECT_EQ(read(name), before) << name;

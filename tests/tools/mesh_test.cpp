@@ -1,16 +1,18 @@
 #include "tools/render/mesh/mesh.h"
 
-#include <gonio/mapping/base/error.h>
-#include <gonio/mapping/charts/hemisphere.h>
-#include "tests/support/table_files.h"
+#include <algorithm>
+#include <random>
+#include <sstream>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
-#include <algorithm>
-#include <glm/geometric.hpp>
-#include <glm/gtc/matrix_transform.hpp>
-#include <random>
-#include <sstream>
+#include <gonio/mapping/base/error.h>
+#include <gonio/mapping/charts/hemisphere.h>
+
+#include "tests/support/table_files.h"
 
 namespace gonio {
 namespace {
@@ -18,7 +20,8 @@ namespace {
 /// By the divergence theorem; positive if triangles turn counter-clockwise seen from outside.
 float volume(const TriangleMesh& mesh) {
   float sum = 0;
-  for (const auto& t : mesh.triangles) sum += glm::dot(mesh.positions[t[0]], glm::cross(mesh.positions[t[1]], mesh.positions[t[2]])) / 6;
+  for (const auto& t : mesh.triangles)
+    sum += glm::dot(mesh.positions[t[0]], glm::cross(mesh.positions[t[1]], mesh.positions[t[2]])) / 6;
   return sum;
 }
 
@@ -52,7 +55,8 @@ TEST(Mesh, AMirrorKeepsTheOutsideOutside) {
   const float before = volume(sphere);
   transform(sphere, glm::scale(glm::mat4(1.0f), glm::vec3(-2, 1, 1)));
   EXPECT_NEAR(volume(sphere), 2 * before, 1e-2f);
-  for (std::size_t k = 0; k < sphere.normals.size(); ++k) EXPECT_GT(glm::dot(sphere.normals[k], sphere.positions[k]), 0);
+  for (std::size_t k = 0; k < sphere.normals.size(); ++k)
+    EXPECT_GT(glm::dot(sphere.normals[k], sphere.positions[k]), 0);
 }
 
 TEST(Mesh, ComesFromFilesAlone) {
@@ -80,12 +84,15 @@ std::string error_of(const std::string& bytes) {
 
 // Two faces of a box's corner, with what a reader has to pass over.
 constexpr const char* ply_header =
-    "comment a test\nelement vertex 5\nproperty uchar red\nproperty float x\nproperty double y\nproperty short z\nproperty float nx\nproperty float ny\n"
-    "property float nz\nproperty list uchar int marks\nelement material 1\nproperty int id\nelement face 2\nproperty list uchar int vertex_indices\n"
+    "comment a test\nelement vertex 5\nproperty uchar red\nproperty float x\nproperty double y\nproperty short "
+    "z\nproperty float nx\nproperty float ny\n"
+    "property float nz\nproperty list uchar int marks\nelement material 1\nproperty int id\nelement face 2\nproperty "
+    "list uchar int vertex_indices\n"
     "property float quality\nend_header\n";
 
 const std::string ascii_ply = std::string("ply\nformat ascii 1.0\n") + ply_header +
-                              "1 0 0 0 0 0 2 0\n1 1 0 0 0 0 2 1 7\n1 1 1 0 0 0 2 2 7 8\n1 0 1 0 0 0 2 0\n1 0 1 2 0 0 2 0\n12\n4 0 1 2 3 5\n3 0 3 4 5\n";
+                              "1 0 0 0 0 0 2 0\n1 1 0 0 0 0 2 1 7\n1 1 1 0 0 0 2 2 7 8\n1 0 1 0 0 0 2 0\n1 0 1 2 0 0 2 "
+                              "0\n12\n4 0 1 2 3 5\n3 0 3 4 5\n";
 
 std::string binary_ply(bool big) {
   std::string bytes = std::string("ply\nformat binary_") + (big ? "big" : "little") + "_endian 1.0\n" + ply_header;
@@ -97,13 +104,15 @@ std::string binary_ply(bool big) {
   };
   const glm::vec3 points[] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 1, 2}};
   for (std::uint8_t k = 0; k < 5; ++k) {
-    add(std::uint8_t(1)), add(points[k].x), add(double(points[k].y)), add(std::int16_t(points[k].z)), add(0.0f), add(0.0f), add(2.0f);
+    add(std::uint8_t(1)), add(points[k].x), add(double(points[k].y)), add(std::int16_t(points[k].z)), add(0.0f),
+        add(0.0f), add(2.0f);
     const std::uint8_t marks = k < 3 ? k : 0;
     add(marks);
     for (std::uint8_t j = 0; j < marks; ++j) add(std::int32_t(7 + j));
   }
   add(std::int32_t(12));
-  for (const std::vector<std::int32_t>& face : {std::vector<std::int32_t>{0, 1, 2, 3}, std::vector<std::int32_t>{0, 3, 4}}) {
+  for (const std::vector<std::int32_t>& face :
+       {std::vector<std::int32_t>{0, 1, 2, 3}, std::vector<std::int32_t>{0, 3, 4}}) {
     add(std::uint8_t(face.size()));
     for (const std::int32_t v : face) add(v);
     add(5.0f);
@@ -132,7 +141,8 @@ TEST(Mesh, PlyInEveryEncoding) {
 // Cut anywhere, a PLY is refused: it neither hangs nor ends the program nor loses faces.
 TEST(Mesh, APlyThatIsCutOffIsRefused) {
   for (const std::string& bytes : {ascii_ply, binary_ply(false), binary_ply(true)})
-    for (std::size_t size = 0; size + 2 < bytes.size(); ++size) EXPECT_NE(error_of(bytes.substr(0, size)), "none") << size;
+    for (std::size_t size = 0; size + 2 < bytes.size(); ++size)
+      EXPECT_NE(error_of(bytes.substr(0, size)), "none") << size;
   EXPECT_NE(error_of(binary_ply(false) + "1"), "none");
   EXPECT_NE(error_of(ascii_ply + "3 0 1 2 5\n"), "none");
   EXPECT_EQ(error_of(ascii_ply + "\n\n"), "none");
@@ -145,36 +155,49 @@ TEST(Mesh, PlyErrorsSayWhatIsWrong) {
   };
   const std::pair<std::string, std::string> cases[] = {
       {error_of("ply\nformat asc"), "m: header: found the end of the file, expected a line end_header"},
-      {with("ascii 1.0", "ascii 2.0"), "m: format: found 'ascii' '2.0', expected ascii, binary_little_endian or binary_big_endian, and 1.0"},
+      {with("ascii 1.0", "ascii 2.0"),
+       "m: format: found 'ascii' '2.0', expected ascii, binary_little_endian or binary_big_endian, and 1.0"},
       {with("format ascii 1.0\n", ""), "m: header: found no format, expected a line format"},
-      {with("comment", "remark"), "m: header: found 'remark a test', expected format, comment, element, property or end_header"},
+      {with("comment", "remark"),
+       "m: header: found 'remark a test', expected format, comment, element, property or end_header"},
       {with("element vertex 5", "element vertex -5"), "m: element 'vertex': found '-5', expected a number of elements"},
-      {with("element vertex 5", "element vertex 99999999999999999999"), "m: element 'vertex': found '99999999999999999999', expected a number of elements"},
-      {with("element vertex 5", "element vertex 9999999999999"), "m: element vertex: found 9999999999999 of them and " + std::to_string(ascii_ply.size() - ascii_ply.find("1 0 0 0 0 0 2 0")) + " bytes, expected as many as the file holds"},
+      {with("element vertex 5", "element vertex 99999999999999999999"),
+       "m: element 'vertex': found '99999999999999999999', expected a number of elements"},
+      {with("element vertex 5", "element vertex 9999999999999"),
+       "m: element vertex: found 9999999999999 of them and " +
+           std::to_string(ascii_ply.size() - ascii_ply.find("1 0 0 0 0 0 2 0")) +
+           " bytes, expected as many as the file holds"},
       {with("element face 2", "element face 3"), "m: face 2: found the end of the file, expected 3 of them"},
-      {with("element face 2", "element face 1"), "m: content: found 11 bytes more, expected the end after what the header counts"},
-      {with("element material 1\nproperty int id\n", "element material 9999999999999999999\n"), "m: face 0: found the end of the file, expected 2 of them"},
+      {with("element face 2", "element face 1"),
+       "m: content: found 11 bytes more, expected the end after what the header counts"},
+      {with("element material 1\nproperty int id\n", "element material 9999999999999999999\n"),
+       "m: face 0: found the end of the file, expected 2 of them"},
       {with("element face", "element mesh"), "m: header: found no element face, expected one"},
       {with("element material", "element vertex"), "m: element 'vertex': found it twice, expected each once"},
       {with("property float x", "property float y"), "m: property 'y': found it twice, expected each once"},
       {with("property float x", "property float w"), "m: element vertex: found no x, y and z, expected all three"},
       {with("property float x", "property quad x"), "m: property: found the type 'quad', expected char,"},
-      {with("list uchar int vertex_indices", "int vertex_indices"), "m: element face: found no list vertex_indices, expected one"},
+      {with("list uchar int vertex_indices", "int vertex_indices"),
+       "m: element face: found no list vertex_indices, expected one"},
       {with("4 0 1 2 3", "4 0 1 2 5"), "m: face 0: found a vertex 5, expected a whole number from 0 to below 5"},
       {with("4 0 1 2 3", "4 0 1 2 -1"), "m: face 0: found a vertex -1, expected"},
       {with("4 0 1 2 3", "4 0 1 2 nan"), "m: face 0: found a vertex nan"},
       {with("4 0 1 2 3", "4 0 1 2 1.5"), "m: face 0: found a vertex 1.5"},
       {with("4 0 1 2 3", "2 0 1"), "m: face 0: found 2 corners, expected at least three"},
-      {with("4 0 1 2 3", "1e9 0 1 2 3"), "m: face 0: found a list of length 1000000000, expected a whole number from 0 to below"},
+      {with("4 0 1 2 3", "1e9 0 1 2 3"),
+       "m: face 0: found a list of length 1000000000, expected a whole number from 0 to below"},
       {with("4 0 1 2 3", "4 0 1 2 x"), "m: face 0: found 'x', expected a number"},
   };
   for (const auto& [found, expected] : cases) EXPECT_EQ(found.find(expected), 0u) << found << "\n" << expected;
 }
 
 TEST(Mesh, ObjStatements) {
-  const std::string points = "# a square\r\nmtllib /dev/zero\no one\nv 0 0 0\nv 1 0 0 1\nv 1 1 0 0.5 0.5 0.5\nv +0 1e0 0\nvt 0 0\nvn 0 0 3\ng two\ns 1\n";
-  for (const char* faces : {"f 1 2 3 4", "f 1 2 3\nf 1 3 4", "f -4 -3 -2 -1", "f 1/1 2/1 3/1 4/1", "f 1//1 2//1 3//1 4//1", "f 1/1/1 2/1/1 3/-1/-1 4/1/1",
-                            "f 1 2 \\\n3 4\n", "l 1 2\np 1\nf 1 2 3 4 # all of it", "f 1 2 3 4\r\nusemtl none\r\n", "\tf\t1 2 3 4"}) {
+  const std::string points =
+      "# a square\r\nmtllib /dev/zero\no one\nv 0 0 0\nv 1 0 0 1\nv 1 1 0 0.5 0.5 0.5\nv +0 1e0 0\nvt 0 0\nvn 0 0 3\ng "
+      "two\ns 1\n";
+  for (const char* faces : {"f 1 2 3 4", "f 1 2 3\nf 1 3 4", "f -4 -3 -2 -1", "f 1/1 2/1 3/1 4/1",
+                            "f 1//1 2//1 3//1 4//1", "f 1/1/1 2/1/1 3/-1/-1 4/1/1", "f 1 2 \\\n3 4\n",
+                            "l 1 2\np 1\nf 1 2 3 4 # all of it", "f 1 2 3 4\r\nusemtl none\r\n", "\tf\t1 2 3 4"}) {
     const TriangleMesh mesh = read_mesh(points + faces, "m");
     EXPECT_EQ(mesh.triangles.size(), 2u) << faces;
     EXPECT_FLOAT_EQ(area(mesh), 1) << faces;
@@ -200,7 +223,8 @@ TEST(Mesh, ObjStatements) {
       {"face 1 2 3", "m: line 12: found 'face', expected a statement of an OBJ file, or a PLY file"},
       {"", "m: found no triangle, expected a mesh"},
   };
-  for (const auto& [statement, expected] : cases) EXPECT_EQ(error_of(points + statement).find(expected), 0u) << error_of(points + statement) << "\n" << expected;
+  for (const auto& [statement, expected] : cases)
+    EXPECT_EQ(error_of(points + statement).find(expected), 0u) << error_of(points + statement) << "\n" << expected;
   EXPECT_EQ(error_of("solid stl\n").find("m: line 1: found 'solid'"), 0u);
   EXPECT_NE(error_of(""), "none");
 }
@@ -209,7 +233,9 @@ TEST(Mesh, ObjStatements) {
 TriangleMesh polygon(const std::vector<glm::vec2>& points, float scale) {
   std::ostringstream text;
   text.precision(9);
-  for (const glm::vec2& p : points) text << "v " << scale * (0.3f * p.x - 0.8f * p.y) << ' ' << scale * (0.9f * p.x + 0.1f * p.y) << ' ' << scale * (p.x - p.y) << '\n';
+  for (const glm::vec2& p : points)
+    text << "v " << scale * (0.3f * p.x - 0.8f * p.y) << ' ' << scale * (0.9f * p.x + 0.1f * p.y) << ' '
+         << scale * (p.x - p.y) << '\n';
   text << 'f';
   for (std::size_t k = 1; k <= points.size(); ++k) text << ' ' << k;
   return read_mesh(text.str(), "m");
@@ -228,10 +254,10 @@ glm::dvec3 vector_area(const TriangleMesh& mesh) {
 // Triangles that overlapped or lay outside would have more area than the polygon.
 TEST(Mesh, PolygonsAreCoveredOnce) {
   std::vector<std::vector<glm::vec2>> polygons = {
-      {{0, 0}, {2, 0}, {2, 2}, {1, 0.5f}, {0, 2}},                                      // a notch
-      {{0, 0}, {1, 0.5f}, {2, 0}, {1, 2}},                                              // an arrow head
+      {{0, 0}, {2, 0}, {2, 2}, {1, 0.5f}, {0, 2}},                                                // a notch
+      {{0, 0}, {1, 0.5f}, {2, 0}, {1, 2}},                                                        // an arrow head
       {{0, 0}, {3, 0}, {3, 3}, {0, 3}, {0, 1}, {2, 1}, {2, 2}, {1, 2}, {1, 1.5f}, {0.5f, 1.5f}},  // inwards
-      {{0, 0}, {1, 0}, {2, 0}, {3, 0}, {3, 1}, {2, 0.5f}, {1, 1}, {0, 1}},               // corners on a line
+      {{0, 0}, {1, 0}, {2, 0}, {3, 0}, {3, 1}, {2, 0.5f}, {1, 1}, {0, 1}},                        // corners on a line
   };
   std::mt19937 engine(1);
   std::uniform_real_distribution<float> radius(0.1f, 1);

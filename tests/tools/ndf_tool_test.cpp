@@ -1,12 +1,13 @@
 // Runs the verb ndf of the program GONIO_TOOL as a user does.
 
-#include <gonio/brdf/ndf/image/disk_image_file.h>
-#include <gtest/gtest.h>
-#include <sys/wait.h>
-
 #include <algorithm>
 #include <cstdlib>
+
+#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <sys/wait.h>
+
+#include <gonio/brdf/ndf/image/disk_image_file.h>
 
 #include "tests/support/ndf_cases.h"
 #include "tests/support/table_files.h"
@@ -20,7 +21,8 @@ using nlohmann::json;
 class NdfTool : public testing::Test {
  protected:
   int run(const std::string& arguments) const {
-    const int status = std::system(("cd '" + folder_.path().string() + "' && '" GONIO_TOOL "' ndf " + arguments + " >out 2>err").c_str());
+    const int status = std::system(
+        ("cd '" + folder_.path().string() + "' && '" GONIO_TOOL "' ndf " + arguments + " >out 2>err").c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
   std::string text(const std::string& name) const { return test::file_bytes(folder_ / name); }
@@ -33,7 +35,8 @@ class NdfTool : public testing::Test {
     EXPECT_EQ(fs::exists(folder_ / (folder + "/profile.svg")), profile);
     for (const char* name : {"ndf.svg", "g1.svg"}) {
       EXPECT_NE(text(folder + "/" + name).find("contrast stretched"), std::string::npos);
-      EXPECT_NE(text(folder + "/" + name).find("data:image/png;base64,iVBORw0KGgo"), std::string::npos);  // PNG's magic number
+      EXPECT_NE(text(folder + "/" + name).find("data:image/png;base64,iVBORw0KGgo"),
+                std::string::npos);  // PNG's magic number
     }
   }
 
@@ -78,14 +81,16 @@ TEST_F(NdfTool, SynthesisedGgx) {
     double alpha;
     const char *model, *file, *options;
   };
-  for (const Case& c : {Case{0.02, "ggx:alpha=0.02,F0=0.02", "a.binary", ""}, Case{0.3, "ggx:alpha=0.3,F0=1", "a.binary", ""},
-                        Case{0.3, "ggx:alpha=0.3,F0=1", "a.mbsdf", ""}, Case{0.3, "ggx:alpha=0.3,F0=0.5", "a.binary", "--noise 0.05"},
-                        Case{1, "ggx:alpha=1,F0=0.5", "a.binary", "--noise 0.05"}, Case{1, "ggx:alpha=1,F0=1", "a.binary", ""},
-                        Case{1, "ggx:alpha=1,F0=0.02", "a.mbsdf", ""}, Case{0.3, "ggx:alpha=0.3,F0=1", "a.binary", "--measured-to 30"},
-                        Case{1, "ggx:alpha=1,F0=0.04", "a.mbsdf", "--measured-to 50"}}) {
+  for (const Case& c :
+       {Case{0.02, "ggx:alpha=0.02,F0=0.02", "a.binary", ""}, Case{0.3, "ggx:alpha=0.3,F0=1", "a.binary", ""},
+        Case{0.3, "ggx:alpha=0.3,F0=1", "a.mbsdf", ""}, Case{0.3, "ggx:alpha=0.3,F0=0.5", "a.binary", "--noise 0.05"},
+        Case{1, "ggx:alpha=1,F0=0.5", "a.binary", "--noise 0.05"}, Case{1, "ggx:alpha=1,F0=1", "a.binary", ""},
+        Case{1, "ggx:alpha=1,F0=0.02", "a.mbsdf", ""}, Case{0.3, "ggx:alpha=0.3,F0=1", "a.binary", "--measured-to 30"},
+        Case{1, "ggx:alpha=1,F0=0.04", "a.mbsdf", "--measured-to 50"}}) {
     SCOPED_TRACE(std::string(c.model) + " " + c.file + " " + c.options);
     const std::string file = c.file;
-    const std::string synth = "cd '" + folder_.path().string() + "' && '" GONIO_TOOL "' synth " + c.model + " -o " + file + " " + c.options;
+    const std::string synth =
+        "cd '" + folder_.path().string() + "' && '" GONIO_TOOL "' synth " + c.model + " -o " + file + " " + c.options;
     ASSERT_EQ(std::system(synth.c_str()), 0);
     ASSERT_EQ(run(file + " -o a --size 32"), 0) << text("err");
     const json j = result("a"), radial = j["radial"];

@@ -1,13 +1,12 @@
-#include "tools/page/write_page.h"
-
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <memory>
 
+#include <gtest/gtest.h>
+
 #include "tests/support/chromium.h"
+#include "tools/page/write_page.h"
 
 namespace gonio {
 namespace {
@@ -20,8 +19,14 @@ constexpr int charts = 7;  // of a material
 json method(const std::string& id, const std::string& chart, double ns, double rank) {
   json angles = json::array(), curves = json::array(), qmc = json::array(), mc = json::array();
   for (const double theta_i : {2, 10, 30, 50, 70, 80, 85})
-    angles.push_back({{"theta_i_deg", theta_i}, {"relvar", 1e-3 * rank * (1 + theta_i / 90)}, {"max_weight", 1 + rank}, {"invalid_fraction", 0},
-                      {"pdf_integral", 1}, {"albedo", {0.5, 0.5, 0.5}}, {"albedo_table", {0.5, 0.5, 0.5}}, {"chi2_p", 0.5}});
+    angles.push_back({{"theta_i_deg", theta_i},
+                      {"relvar", 1e-3 * rank * (1 + theta_i / 90)},
+                      {"max_weight", 1 + rank},
+                      {"invalid_fraction", 0},
+                      {"pdf_integral", 1},
+                      {"albedo", {0.5, 0.5, 0.5}},
+                      {"albedo_table", {0.5, 0.5, 0.5}},
+                      {"chi2_p", 0.5}});
   for (const double theta_i : {10, 30, 50, 80}) {
     json pdf = json::array(), shares = json(std::vector<double>(120, 0.0));
     for (double t = -88; t <= 88; t += 2) pdf.push_back(std::cos(t * 3.14159 / 180) / 3.14159 * (1 + 0.02 * rank));
@@ -29,11 +34,23 @@ json method(const std::string& id, const std::string& chart, double ns, double r
     curves.push_back({{"theta_i_deg", theta_i}, {"pdf", pdf}, {"weights", {{"zero", 0}, {"shares", shares}}}});
     if (chart != "none") curves.back()["grid"] = "M0,0l100,0l0,-100M200,0l10,10";
   }
-  for (int k = 4; k <= 16; ++k) qmc.push_back(rank * std::pow(2.0, -0.9 * k)), mc.push_back(rank * std::pow(2.0, -0.5 * k));
-  return {{"id", id}, {"chart", chart}, {"params", json::object()}, {"bytes", static_cast<int>(16 * rank)}, {"build_seconds", 0.1},
-          {"ns", {{"sample", ns}, {"pdf", ns / 2}, {"eval", ns / 3}}}, {"angles", angles},
-          {"coherence", {{"stretch_p50", 1}, {"stretch_p99", 2}, {"tears", 0}}}, {"qmc_slope", -0.9}, {"mc_slope", -0.5},
-          {"qmc_error", qmc}, {"mc_error", mc}, {"mean_relvar", 1e-3 * rank}, {"efficiency", 1 / ns}, {"curves", curves}};
+  for (int k = 4; k <= 16; ++k)
+    qmc.push_back(rank * std::pow(2.0, -0.9 * k)), mc.push_back(rank * std::pow(2.0, -0.5 * k));
+  return {{"id", id},
+          {"chart", chart},
+          {"params", json::object()},
+          {"bytes", static_cast<int>(16 * rank)},
+          {"build_seconds", 0.1},
+          {"ns", {{"sample", ns}, {"pdf", ns / 2}, {"eval", ns / 3}}},
+          {"angles", angles},
+          {"coherence", {{"stretch_p50", 1}, {"stretch_p99", 2}, {"tears", 0}}},
+          {"qmc_slope", -0.9},
+          {"mc_slope", -0.5},
+          {"qmc_error", qmc},
+          {"mc_error", mc},
+          {"mean_relvar", 1e-3 * rank},
+          {"efficiency", 1 / ns},
+          {"curves", curves}};
 }
 
 json material(const std::string& name, double outgoing_rank) {
@@ -41,16 +58,27 @@ json material(const std::string& name, double outgoing_rank) {
   for (const double theta_i : {10, 30, 50, 80}) {
     json theta_o = json::array(), table = json::array();
     for (double t = -88; t <= 88; t += 2) theta_o.push_back(t), table.push_back(std::cos(t * 3.14159 / 180) / 3.14159);
-    curves.push_back({{"theta_i_deg", theta_i}, {"theta_o_deg", theta_o}, {"table", table},
+    curves.push_back({{"theta_i_deg", theta_i},
+                      {"theta_o_deg", theta_o},
+                      {"table", table},
                       {"disk", {{"sectors", 2}, {"rings", 2}, {"levels", {0, -50, -100, -20}}}}});
   }
-  return {{"name", name}, {"source", "a/" + name + ".bsdf"}, {"format", "rgl"}, {"source_bytes", 123456}, {"fits", json::array()}, {"curves", curves},
+  return {{"name", name},
+          {"source", "a/" + name + ".bsdf"},
+          {"format", "rgl"},
+          {"source_bytes", 123456},
+          {"fits", json::array()},
+          {"curves", curves},
           {"verdict", "Sample <it> & be done."},
-          {"methods", {method("cosine", "none", 100, 500), method("displacement", "outgoing", 200, outgoing_rank), method("displacement", "half", 150, 2)}}};
+          {"methods",
+           {method("cosine", "none", 100, 500), method("displacement", "outgoing", 200, outgoing_rank),
+            method("displacement", "half", 150, 2)}}};
 }
 
 json example() {
-  return {{"gonio_version", "1.2.3"}, {"machine", {{"cpu", "a </script> cpu"}, {"compiler", "GCC"}, {"threads", 2}}}, {"lights", json::array()},
+  return {{"gonio_version", "1.2.3"},
+          {"machine", {{"cpu", "a </script> cpu"}, {"compiler", "GCC"}, {"threads", 2}}},
+          {"lights", json::array()},
           {"materials", {material("first", 3), material("second", 1)}}};
 }
 
@@ -91,14 +119,19 @@ class PageTest : public testing::Test {
   }
   /// As a hand does: sets a control and says that it has changed.
   void choose(const std::string& selector, const std::string& value) {
-    browser_->evaluate("(() => { const s = document.querySelector(" + json(selector).dump() + "); s.value = " + json(value).dump() +
-                       "; s.dispatchEvent(new Event('change', {bubbles: true})); })()");
+    browser_->evaluate("(() => { const s = document.querySelector(" + json(selector).dump() + "); s.value = " +
+                       json(value).dump() + "; s.dispatchEvent(new Event('change', {bubbles: true})); })()");
   }
-  void click(const std::string& selector) { browser_->evaluate("document.querySelector(" + json(selector).dump() + ").click()"); }
+  void click(const std::string& selector) {
+    browser_->evaluate("document.querySelector(" + json(selector).dump() + ").click()");
+  }
 
   void size(int width, int height, bool dark, bool print = false) {
-    browser_->call("Emulation.setDeviceMetricsOverride", {{"width", width}, {"height", height}, {"deviceScaleFactor", 1}, {"mobile", width < 500}});
-    browser_->call("Emulation.setEmulatedMedia", {{"media", print ? "print" : "screen"}, {"features", {{{"name", "prefers-color-scheme"}, {"value", dark ? "dark" : "light"}}}}});
+    browser_->call("Emulation.setDeviceMetricsOverride",
+                   {{"width", width}, {"height", height}, {"deviceScaleFactor", 1}, {"mobile", width < 500}});
+    browser_->call("Emulation.setEmulatedMedia",
+                   {{"media", print ? "print" : "screen"},
+                    {"features", {{{"name", "prefers-color-scheme"}, {"value", dark ? "dark" : "light"}}}}});
   }
 
   void expect_clean() {
@@ -137,28 +170,37 @@ TEST_F(PageTest, ComplaintsAndRequestsAreNoticed) {
   expect_clean();
   browser_->evaluate("console.error('found')");
   EXPECT_EQ(browser_->complaints.size(), 1u);
-  browser_->evaluate("new Promise(done => { const i = new Image(); i.onload = i.onerror = done; i.src = 'http://localhost:1/'; })");
+  browser_->evaluate(
+      "new Promise(done => { const i = new Image(); i.onload = i.onerror = done; i.src = 'http://localhost:1/'; })");
   EXPECT_GT(browser_->complaints.size(), 1u) << "the page's policy ought to block requests";
 }
 
 TEST_F(PageTest, ControlsWork) {
   open(example());
   size(1200, 6000, false);
-  ASSERT_TRUE(browser_->wait_for("document.querySelectorAll('#material-0 .chart svg').length === document.querySelectorAll('#material-0 .chart').length"));
+  ASSERT_TRUE(
+      browser_->wait_for("document.querySelectorAll('#material-0 .chart svg').length === "
+                         "document.querySelectorAll('#material-0 .chart').length"));
   const auto drawing = [&](const std::string& chart) {
-    return browser_->evaluate("document.querySelector('section:not([hidden]) [data-chart=" + chart + "] .chart').innerHTML").get<std::string>();
+    return browser_
+        ->evaluate("document.querySelector('section:not([hidden]) [data-chart=" + chart + "] .chart').innerHTML")
+        .get<std::string>();
   };
   const auto changes = [&](const std::string& chart, const std::string& before) {
-    return browser_->wait_for("document.querySelector('section:not([hidden]) [data-chart=" + chart + "] .chart').innerHTML !== " + json(before).dump());
+    return browser_->wait_for("document.querySelector('section:not([hidden]) [data-chart=" + chart +
+                              "] .chart').innerHTML !== " + json(before).dump());
   };
-  for (const auto& [tool, chart, value] : std::vector<std::array<std::string, 3>>{
-           {"time", "speed-accuracy", "pdf"}, {"relvar", "speed-accuracy", "85"}, {"radial", "goniometric", "linear"}}) {
+  for (const auto& [tool, chart, value] :
+       std::vector<std::array<std::string, 3>>{{"time", "speed-accuracy", "pdf"},
+                                               {"relvar", "speed-accuracy", "85"},
+                                               {"radial", "goniometric", "linear"}}) {
     const std::string before = drawing(chart);
     choose("#material-0 [data-tool=" + tool + "]", value);
     EXPECT_TRUE(changes(chart, before)) << tool;
   }
   choose("#angle", "80");
-  EXPECT_TRUE(browser_->wait_for("document.querySelector('#material-0 [data-chart=weights] h3').textContent.includes('80')"));
+  EXPECT_TRUE(
+      browser_->wait_for("document.querySelector('#material-0 [data-chart=weights] h3').textContent.includes('80')"));
 
   const std::string with_all = drawing("relvar");
   EXPECT_NE(with_all.find("#808080"), std::string::npos);
@@ -166,7 +208,8 @@ TEST_F(PageTest, ControlsWork) {
   EXPECT_TRUE(changes("relvar", with_all));
   EXPECT_EQ(drawing("relvar").find("#808080"), std::string::npos);
   click("#all");
-  EXPECT_TRUE(browser_->wait_for("document.querySelector('#material-0 [data-chart=relvar] .chart').innerHTML.includes('#808080')"));
+  EXPECT_TRUE(browser_->wait_for(
+      "document.querySelector('#material-0 [data-chart=relvar] .chart').innerHTML.includes('#808080')"));
 
   click("#next");
   EXPECT_TRUE(browser_->wait_for("document.querySelectorAll('#material-1:not([hidden]) .chart svg').length === 7"));
@@ -180,9 +223,13 @@ TEST_F(PageTest, ControlsWork) {
 TEST_F(PageTest, ChartsAreSavedAsFiles) {
   open(example());
   size(1200, 6000, false);
-  ASSERT_TRUE(browser_->wait_for("document.querySelectorAll('#material-0 .chart svg').length === document.querySelectorAll('#material-0 .chart').length"));
+  ASSERT_TRUE(
+      browser_->wait_for("document.querySelectorAll('#material-0 .chart svg').length === "
+                         "document.querySelectorAll('#material-0 .chart').length"));
   // A link that would be followed is kept instead.
-  browser_->evaluate("window.saved = []; HTMLAnchorElement.prototype.click = function () { saved.push([this.download, this.href.slice(0, 14)]); }");
+  browser_->evaluate(
+      "window.saved = []; HTMLAnchorElement.prototype.click = function () { saved.push([this.download, "
+      "this.href.slice(0, 14)]); }");
   const int buttons = count("#material-0 [data-save]");
   EXPECT_EQ(buttons, 2 * charts);
   browser_->evaluate("document.querySelectorAll('#material-0 [data-save]').forEach(b => b.click())");
@@ -201,12 +248,15 @@ TEST_F(PageTest, EveryControlIsReachedByKeyboard) {
   json seen = json::array();
   for (int k = 0; k < 12; ++k) {
     for (const char* type : {"rawKeyDown", "keyUp"})
-      browser_->call("Input.dispatchKeyEvent", {{"type", type}, {"key", "Tab"}, {"code", "Tab"}, {"windowsVirtualKeyCode", 9}});
-    seen.push_back(browser_->evaluate("[document.activeElement.tagName + '#' + document.activeElement.id, "
-                                      "getComputedStyle(document.activeElement).outlineStyle]"));
+      browser_->call("Input.dispatchKeyEvent",
+                     {{"type", type}, {"key", "Tab"}, {"code", "Tab"}, {"windowsVirtualKeyCode", 9}});
+    seen.push_back(
+        browser_->evaluate("[document.activeElement.tagName + '#' + document.activeElement.id, "
+                           "getComputedStyle(document.activeElement).outlineStyle]"));
   }
   const std::string order = seen.dump();
-  for (const char* id : {"SELECT#material", "BUTTON#next", "SELECT#angle", "SUMMARY#", "INPUT#"}) EXPECT_NE(order.find(id), std::string::npos) << id << " in " << order;
+  for (const char* id : {"SELECT#material", "BUTTON#next", "SELECT#angle", "SUMMARY#", "INPUT#"})
+    EXPECT_NE(order.find(id), std::string::npos) << id << " in " << order;
   for (const auto& stop : seen) EXPECT_EQ(stop[1], "solid") << stop;
 }
 
@@ -224,7 +274,11 @@ TEST_F(PageTest, ReportsWithoutCurvesOrMaterialsAreShown) {
 
   json lights = example();
   lights["materials"] = json::array();
-  lights["lights"] = {{{"name", "lamp"}, {"source", "lamp.ies"}, {"format", "ies"}, {"flux", 1000}, {"methods", {{{"id", "texels"}, {"flux", 1001}, {"relvar", 0.1}, {"ns", {{"sample", 30}}}}}}}};
+  lights["lights"] = {{{"name", "lamp"},
+                       {"source", "lamp.ies"},
+                       {"format", "ies"},
+                       {"flux", 1000},
+                       {"methods", {{{"id", "texels"}, {"flux", 1001}, {"relvar", 0.1}, {"ns", {{"sample", 30}}}}}}}};
   open(lights, "document.querySelector('#lights td')");
   EXPECT_EQ(text("#lights h2"), "lamp");
   EXPECT_EQ(text("#lights tbody tr"), "texels10010.130");
@@ -243,12 +297,20 @@ json full_example() {
   for (json& m : first["methods"])
     if (m["chart"] != "none") m["ns"]["sample_batch"] = 31.25;
   for (const int kib : {1, 4, 16, 64})
-    first["front"].push_back({{"id", "compact"}, {"bytes", 1024 * kib}, {"ns", 300}, {"relvar", 0.1 / kib}, {"eval_error", 0.2 / kib}, {"chosen", kib == 16}});
-  first["front"].push_back({{"id", "lobes1"}, {"bytes", 2000}, {"ns", 250}, {"relvar", 0.02}, {"eval_error", 0.3}, {"chosen", false}});
+    first["front"].push_back({{"id", "compact"},
+                              {"bytes", 1024 * kib},
+                              {"ns", 300},
+                              {"relvar", 0.1 / kib},
+                              {"eval_error", 0.2 / kib},
+                              {"chosen", kib == 16}});
+  first["front"].push_back(
+      {{"id", "lobes1"}, {"bytes", 2000}, {"ns", 250}, {"relvar", 0.02}, {"eval_error", 0.3}, {"chosen", false}});
   json curves = json::array();
   for (const json& c : first["curves"]) curves.push_back({{"theta_i_deg", c["theta_i_deg"]}, {"model", c["table"]}});
   const json errors = {{"cosine_rms", 1}, {"log_rms", 1}, {"relative_l1", 1}, {"albedo", 1}, {"delta_e_2000", 1}};
-  first["fits"] = {{{"model", "lambert:albedo=0.5"}, {"errors", {{"inside_cutoff", errors}, {"beyond_cutoff", errors}}}, {"curves", curves}}};
+  first["fits"] = {{{"model", "lambert:albedo=0.5"},
+                    {"errors", {{"inside_cutoff", errors}, {"beyond_cutoff", errors}}},
+                    {"curves", curves}}};
   first["methods"].push_back(method("lobes1", "none", 120, 30));
   first["methods"].push_back(method("blend", "half", 180, 1.5));
   first["methods"].back()["params"]["default"] = true;
@@ -256,8 +318,16 @@ json full_example() {
   for (const std::string variant : {"cardan", "gonio-diagram"})
     for (const std::string input : {"constant", "spike"}) {
       const bool fails = variant == "cardan" && input == "spike";
-      report["stability"]["rows"].push_back({{"variant", variant}, {"input", input}, {"error_of", "mass"}, {"why", "it <cancels>"}, {"max_error", fails ? 5000 : 2},
-                                             {"max_error_bound", 16}, {"bias", fails ? -0.25 : 0.001}, {"bias_standard_error", 0.001}, {"chi2_p", 0.5}, {"fails", fails},
+      report["stability"]["rows"].push_back({{"variant", variant},
+                                             {"input", input},
+                                             {"error_of", "mass"},
+                                             {"why", "it <cancels>"},
+                                             {"max_error", fails ? 5000 : 2},
+                                             {"max_error_bound", 16},
+                                             {"bias", fails ? -0.25 : 0.001},
+                                             {"bias_standard_error", 0.001},
+                                             {"chi2_p", 0.5},
+                                             {"fails", fails},
                                              {"failed", fails ? json({"max_error", "bias"}) : json::array()}});
     }
   return report;
@@ -278,7 +348,8 @@ TEST_F(PageTest, ShowsWhatMemoryBuysAndTheFitsThemselves) {
   browser_->evaluate("dispatchEvent(new Event('afterprint'))");
   size(1200, 9000, false);
   choose("#material-0 [data-tool=diagram]", "pdf");
-  EXPECT_TRUE(browser_->wait_for("document.querySelector('#material-0 [data-chart=goniometric] .keys').textContent.includes('lobes1')"));
+  EXPECT_TRUE(browser_->wait_for(
+      "document.querySelector('#material-0 [data-chart=goniometric] .keys').textContent.includes('lobes1')"));
   EXPECT_EQ(text("#material-0 [data-chart=goniometric] .keys").find("fit of 1"), std::string::npos);
 
   EXPECT_NE(text("#material-0 .methods thead").find("sample, batch, ns"), std::string::npos);
@@ -300,7 +371,8 @@ TEST_F(PageTest, ShowsWhatMemoryBuysAndTheFitsThemselves) {
 
 TEST_F(PageTest, ShowsWhereMethodsFail) {
   open(full_example());
-  EXPECT_NE(text("#stability > p").find("1 of 1 textbook formulas fail somewhere, none of the library's 1."), std::string::npos);
+  EXPECT_NE(text("#stability > p").find("1 of 1 textbook formulas fail somewhere, none of the library's 1."),
+            std::string::npos);
   EXPECT_EQ(text("#stability tbody tr"), "cardan1 of 25000 of 16-25 %0.5it <cancels>");
   EXPECT_EQ(count("#stability .matrix td"), 4);
   EXPECT_EQ(text("#stability .matrix td.fails"), "E Bfails");
@@ -315,12 +387,16 @@ TEST_F(PageTest, ShowsWhereMethodsFail) {
 TEST_F(PageTest, SavedChartsHaveAKey) {
   open(full_example());
   size(1200, 9000, false);
-  ASSERT_TRUE(browser_->wait_for("document.querySelectorAll('#material-0 .chart svg').length === document.querySelectorAll('#material-0 .chart').length"));
+  ASSERT_TRUE(
+      browser_->wait_for("document.querySelectorAll('#material-0 .chart svg').length === "
+                         "document.querySelectorAll('#material-0 .chart').length"));
   EXPECT_EQ(count("#material-0 .mark-group.role-legend"), 0);
-  browser_->evaluate("window.texts = []; HTMLAnchorElement.prototype.click = function () {};"
-                     "URL.createObjectURL = blob => { blob.text().then(text => texts.push(text)); return 'blob:'; }");
+  browser_->evaluate(
+      "window.texts = []; HTMLAnchorElement.prototype.click = function () {};"
+      "URL.createObjectURL = blob => { blob.text().then(text => texts.push(text)); return 'blob:'; }");
   for (const std::string chart : {"relvar", "weights", "goniometric", "front"}) {
-    browser_->evaluate("texts.length = 0; document.querySelector('#material-0 [data-chart=" + chart + "] [data-save=svg]').click()");
+    browser_->evaluate("texts.length = 0; document.querySelector('#material-0 [data-chart=" + chart +
+                       "] [data-save=svg]').click()");
     ASSERT_TRUE(browser_->wait_for("texts.length === 1")) << chart;
     const std::string svg = browser_->evaluate("texts[0]");
     EXPECT_NE(svg.find("role-legend"), std::string::npos) << chart;
@@ -342,12 +418,18 @@ TEST_F(PageTest, Pictures) {
     int width;
     bool dark, print;
   };
-  for (const Picture& picture : {Picture{"light", 1280, false, false}, {"dark", 1280, true, false}, {"phone", 390, false, false}, {"phone_dark", 390, true, false}, {"print", 740, false, true}}) {
+  for (const Picture& picture : {Picture{"light", 1280, false, false},
+                                 {"dark", 1280, true, false},
+                                 {"phone", 390, false, false},
+                                 {"phone_dark", 390, true, false},
+                                 {"print", 740, false, true}}) {
     size(picture.width, 900, picture.dark, picture.print);
     open(report);
     if (picture.print) draw_all();
     size(picture.width, 9000, picture.dark, picture.print);
-    ASSERT_TRUE(browser_->wait_for("document.querySelectorAll('#material-0 .chart svg').length === document.querySelectorAll('#material-0 .chart').length"));
+    ASSERT_TRUE(
+        browser_->wait_for("document.querySelectorAll('#material-0 .chart svg').length === "
+                           "document.querySelectorAll('#material-0 .chart').length"));
     EXPECT_LE(browser_->evaluate("document.documentElement.scrollWidth").get<int>(), picture.width) << picture.name;
     const int height = browser_->evaluate("Math.ceil(document.documentElement.getBoundingClientRect().height)");
     const std::string shown = browser_->evaluate("getComputedStyle(document.body).backgroundColor");

@@ -1,15 +1,17 @@
-#include <gonio/brdf/build/make_bsdf.h>
 #include "tools/render/trace/path_tracer.h"
 
-#include <gonio/fitting/model/synth.h>
-#include "tests/support/table_files.h"
-#include "tools/render/trace/film.h"
-#include <gtest/gtest.h>
-
 #include <cmath>
+#include <numeric>
+
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
-#include <numeric>
+#include <gtest/gtest.h>
+
+#include <gonio/brdf/build/make_bsdf.h>
+#include <gonio/fitting/model/synth.h>
+
+#include "tests/support/table_files.h"
+#include "tools/render/trace/film.h"
 
 namespace gonio {
 namespace {
@@ -26,7 +28,8 @@ std::shared_ptr<const BrdfTable> grey_table() {
 }
 
 std::shared_ptr<const BrdfTable> glossy_table() {
-  static const auto table = table_of(MbsdfTable(synthesize_mbsdf(parse_model("ggx:alpha=0.25,F0=0.3+lambert:albedo=0.5/0.3/0.2"), 24, 48)));
+  static const auto table =
+      table_of(MbsdfTable(synthesize_mbsdf(parse_model("ggx:alpha=0.25,F0=0.3+lambert:albedo=0.5/0.3/0.2"), 24, 48)));
   return table;
 }
 
@@ -54,15 +57,20 @@ std::shared_ptr<const Environment> environment(Light light) {
   RgbImage image{128, 64, {}};
   for (int row = 0; row < image.height; ++row)
     for (int column = 0; column < image.width; ++column) {
-      const float theta = pi<float> * (static_cast<float>(row) + 0.5f) / 64, phi = pi<float> - 2 * pi<float> * (static_cast<float>(column) + 0.5f) / 128;
-      image.pixels.push_back(light({std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)}));
+      const float theta = pi<float> * (static_cast<float>(row) + 0.5f) / 64,
+                  phi = pi<float> - 2 * pi<float> * (static_cast<float>(column) + 0.5f) / 128;
+      image.pixels.push_back(
+          light({std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)}));
     }
   return std::make_shared<const Environment>(std::move(image), "test");
 }
 
-glm::mat4 placed_at(const glm::vec3& position, float size = 1) { return glm::scale(glm::translate(glm::mat4(1.0f), position), glm::vec3(size)); }
+glm::mat4 placed_at(const glm::vec3& position, float size = 1) {
+  return glm::scale(glm::translate(glm::mat4(1.0f), position), glm::vec3(size));
+}
 
-Object object(const char* shape, const glm::mat4& place, std::size_t material, const glm::vec3& emission = glm::vec3(0)) {
+Object object(const char* shape, const glm::mat4& place, std::size_t material,
+              const glm::vec3& emission = glm::vec3(0)) {
   TriangleMesh mesh = make_shape(shape, "");
   transform(mesh, place);
   return {std::make_shared<const TriangleMesh>(std::move(mesh)), material, emission};
@@ -130,7 +138,8 @@ Estimate estimate(const Scene& scene, Strategy strategy) {
       for (std::uint32_t s = 0; s < samples; ++s) {
         PathSequence random(100 * static_cast<std::uint32_t>(strategy) + k, pixel, s);
         const glm::vec2 u = random.next();
-        const PathResult path = tracer.trace(static_cast<float>(pixel % 10) + u.x, static_cast<float>(pixel / 10) + u.y, random);
+        const PathResult path =
+            tracer.trace(static_cast<float>(pixel % 10) + u.x, static_cast<float>(pixel / 10) + u.y, random);
         means[k] += static_cast<double>(luminance(path.radiance)) / (100 * samples);
       }
   const double n = repeats, mean = std::accumulate(means.begin(), means.end(), 0.0) / n;
@@ -140,7 +149,9 @@ Estimate estimate(const Scene& scene, Strategy strategy) {
 }
 
 /// In standard errors.
-double difference(const Estimate& a, const Estimate& b) { return std::abs(a.mean - b.mean) / std::hypot(a.error, b.error); }
+double difference(const Estimate& a, const Estimate& b) {
+  return std::abs(a.mean - b.mean) / std::hypot(a.error, b.error);
+}
 
 struct Case {
   const char* name;
@@ -149,7 +160,8 @@ struct Case {
 const Case lights[] = {{"constant", constant}, {"gradient", gradient}, {"small spot", small_spot}};
 
 void expect_strategies_agree(const Scene& scene, const std::string& name) {
-  const Estimate mis = estimate(scene, Strategy::mis), bsdf = estimate(scene, Strategy::bsdf), light = estimate(scene, Strategy::light);
+  const Estimate mis = estimate(scene, Strategy::mis), bsdf = estimate(scene, Strategy::bsdf),
+                 light = estimate(scene, Strategy::light);
   EXPECT_LT(difference(mis, bsdf), 3) << name << ": " << mis.mean << " and " << bsdf.mean;
   EXPECT_LT(difference(mis, light), 3) << name << ": " << mis.mean << " and " << light.mean;
   EXPECT_LT(difference(bsdf, light), 3) << name << ": " << bsdf.mean << " and " << light.mean;
@@ -257,7 +269,8 @@ TEST(PathTracer, GoniometricLightIlluminatesByTheInverseSquare) {
   scene.materials.push_back({"grey", make_scatter(LambertSampler(glm::vec3(0.5f))), true, nullptr, {}, {}});
   scene.objects.push_back(object("square", glm::mat4(1.0f), 0));
   scene.lights.push_back(down_light({0, 0, 5}));
-  for (const Strategy strategy : strategies) EXPECT_NEAR(mean_luminance(scene, 4, strategy), 0.5 / pi<double> * 100 / 25, 1e-3) << to_string(strategy);
+  for (const Strategy strategy : strategies)
+    EXPECT_NEAR(mean_luminance(scene, 4, strategy), 0.5 / pi<double> * 100 / 25, 1e-3) << to_string(strategy);
   // A blocker in between makes it dark; one behind it does not.
   scene.objects.push_back(object("square", placed_at({0, 0, 5.01f}), 0));
   EXPECT_NEAR(mean_luminance(scene, 4, Strategy::mis), 0.5 / pi<double> * 100 / 25, 1e-3);
@@ -273,7 +286,8 @@ TEST(PathTracer, AWeakLightIsNotLostInTheSky) {
   scene.materials.push_back({"grey", make_scatter(LambertSampler(glm::vec3(0.5f))), true, nullptr, {}, {}});
   scene.objects.push_back(object("square", placed_at({0, 0, 0}, 1000), 0));
   scene.lights.push_back(down_light({0, 0, 1}, 0.001f));
-  for (const Strategy strategy : strategies) EXPECT_NEAR(mean_luminance(scene, 1024, strategy), 0.5 + 0.5 / pi<double> * 0.1, 2e-3) << to_string(strategy);
+  for (const Strategy strategy : strategies)
+    EXPECT_NEAR(mean_luminance(scene, 1024, strategy), 0.5 + 0.5 / pi<double> * 0.1, 2e-3) << to_string(strategy);
 }
 
 // A closed box whose six squares emit 1 and reflect half of what they get: 1 + 1/2 + 1/4 ... = 2.
@@ -285,7 +299,8 @@ TEST(PathTracer, RussianRouletteKeepsTheMean) {
     for (const float sign : {-1.0f, 1.0f}) {
       const glm::vec3 inwards = -sign * side, across(side.y, side.z, side.x);
       glm::mat4 place(1.0f);
-      place[0] = glm::vec4(across, 0), place[1] = glm::vec4(glm::cross(inwards, across), 0), place[2] = glm::vec4(inwards, 0), place[3] = glm::vec4(-inwards, 1);
+      place[0] = glm::vec4(across, 0), place[1] = glm::vec4(glm::cross(inwards, across), 0),
+      place[2] = glm::vec4(inwards, 0), place[3] = glm::vec4(-inwards, 1);
       scene.objects.push_back(object("square", place, 0, glm::vec3(1)));
     }
   EXPECT_NEAR(mean_luminance(scene, 8192, Strategy::bsdf, 64), 2, 2e-3);

@@ -1,12 +1,14 @@
 #include "tools/render/scene/read_scene.h"
 
-#include <gonio/mapping/base/error.h>
-#include "tests/support/table_files.h"
+#include <limits>
+
+#include <glm/geometric.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <glm/geometric.hpp>
-#include <limits>
+#include <gonio/mapping/base/error.h>
+
+#include "tests/support/table_files.h"
 
 namespace gonio {
 namespace {
@@ -61,24 +63,36 @@ TEST(ReadScene, ReadsEveryField) {
 TEST(ReadScene, ErrorsNameFileAndField) {
   EXPECT_EQ(error_of(good()), "none");
   const std::pair<json, const char*> cases[] = {
-      {with("/colour", 1), "s.json: colour: found an unknown member, expected one of camera, environment, materials, objects, lights"},
-      {with("/camera/fov", 30), "s.json: camera.fov: found an unknown member, expected one of position, target, up, vertical_fov, resolution"},
+      {with("/colour", 1),
+       "s.json: colour: found an unknown member, expected one of camera, environment, materials, objects, lights"},
+      {with("/camera/fov", 30),
+       "s.json: camera.fov: found an unknown member, expected one of position, target, up, vertical_fov, resolution"},
       {with("/camera/position", json::array({1, 2})), "s.json: camera.position: found [1,2], expected three numbers"},
       {with("/camera/vertical_fov", 180), "s.json: camera.vertical_fov: found 180, expected a number from 0.01 to 179"},
       {with("/camera/resolution", json::array({0, 5})), "s.json: camera.resolution: found [0,5]"},
-      {with("/camera/target", json::array({0, -5, 2})), "s.json: camera.target: found a view along up, or of no length"},
+      {with("/camera/target", json::array({0, -5, 2})),
+       "s.json: camera.target: found a view along up, or of no length"},
       {with("/camera", 3), "s.json: camera: found 3, expected an object"},
       {with("/environment/constant", -1), "s.json: environment.constant: found -1, expected a number from 0"},
-      {with("/environment", json::object()), "s.json: environment.file: found none, expected one of file, sky and constant"},
-      {with("/environment/suns", 2), "s.json: environment.suns: found an unknown member, expected one of file, sky, constant, scale, turn"},
-      {with("/environment/file", "a.exr"), "s.json: environment.file: found another as well, expected one of file, sky and constant"},
+      {with("/environment", json::object()),
+       "s.json: environment.file: found none, expected one of file, sky and constant"},
+      {with("/environment/suns", 2),
+       "s.json: environment.suns: found an unknown member, expected one of file, sky, constant, scale, turn"},
+      {with("/environment/file", "a.exr"),
+       "s.json: environment.file: found another as well, expected one of file, sky and constant"},
       {with("/environment/sky", {{"sun", {0, 0, 1}}}), "s.json: environment.file: found another as well"},
-      {with("/environment", {{"sky", {{"moon", 1}}}}), "s.json: environment.sky.moon: found an unknown member, expected one of sun, radius, radiance"},
-      {with("/materials/white/colour", 1), "s.json: materials.white.colour: found an unknown member, expected one of file, albedo, sampling, two_sided"},
+      {with("/environment", {{"sky", {{"moon", 1}}}}),
+       "s.json: environment.sky.moon: found an unknown member, expected one of sun, radius, radiance"},
+      {with("/materials/white/colour", 1),
+       "s.json: materials.white.colour: found an unknown member, expected one of file, albedo, sampling, two_sided"},
       {with("/materials/white/sampling", "cosine"), "s.json: materials.white.sampling: found one, expected none"},
-      {with("/objects/0/size", 1), "s.json: objects[0].size: found an unknown member, expected one of shape, file, material, scale, rotate, translate, emission"},
-      {with("/lights", json::array({json{{"intensity", 1}}})), "s.json: lights[0].intensity: found an unknown member, expected one of file, position, rotate, scale"},
-      {with("/materials/white/albedo", 1.5), "s.json: materials.white.albedo: found 1.5, expected a number from 0 to 1"},
+      {with("/objects/0/size", 1),
+       "s.json: objects[0].size: found an unknown member, expected one of shape, file, material, scale, rotate, "
+       "translate, emission"},
+      {with("/lights", json::array({json{{"intensity", 1}}})),
+       "s.json: lights[0].intensity: found an unknown member, expected one of file, position, rotate, scale"},
+      {with("/materials/white/albedo", 1.5),
+       "s.json: materials.white.albedo: found 1.5, expected a number from 0 to 1"},
       {with("/materials/white/file", "a.bsdf"), "s.json: materials.white.file: found albedo as well"},
       {with("/materials/white", json::object()), "s.json: materials.white.file: found none"},
       {with("/materials/white/two_sided", 1), "s.json: materials.white.two_sided: found 1, expected true or false"},
@@ -88,20 +102,24 @@ TEST(ReadScene, ErrorsNameFileAndField) {
       {with("/objects/0/scale", 0), "s.json: objects[0].scale: found 0"},
       {with("/objects/0/file", "a.obj"), "s.json: objects[0].shape: found file as well"},
       {with("/objects", json::array()), "s.json: objects: found []"},
-      {with("/camera/position", json::array({0, 1e30, 0})), "s.json: camera.position: found [0,1e+30,0], expected three numbers from -1e+09 to 1e+09"},
+      {with("/camera/position", json::array({0, 1e30, 0})),
+       "s.json: camera.position: found [0,1e+30,0], expected three numbers from -1e+09 to 1e+09"},
       {with("/camera/up", json::array({0, 1e308, 0})), "s.json: camera.up: found"},
       {with("/environment/turn", 1e30), "s.json: environment.turn: found 1e+30, expected a number from -360 to 360"},
-      {with("/environment/constant", 1e13), "s.json: environment.constant: found 10000000000000.0, expected a number from 0 to 1e+12"},
+      {with("/environment/constant", 1e13),
+       "s.json: environment.constant: found 10000000000000.0, expected a number from 0 to 1e+12"},
       {with("/environment/scale", 1e12), "none"},
       {with("/environment/constant", 1e12), "s.json: environment: found a radiance of"},
-      {with("/environment", json{{"sky", {{"sun", {0, 0, 1}}, {"radiance", 1e38}}}}), "s.json: environment.sky.radiance: found 1e+38"},
+      {with("/environment", json{{"sky", {{"sun", {0, 0, 1}}, {"radiance", 1e38}}}}),
+       "s.json: environment.sky.radiance: found 1e+38"},
       {with("/objects/0/emission", 1e38), "s.json: objects[0].emission: found 1e+38"},
       {with("/objects/0/rotate", json::array({0, 0, 1e6})), "s.json: objects[0].rotate: found"},
       {with("/objects/0/translate", json::array({0, 0, 1e10})), "s.json: objects[0].translate: found"},
       {with("/objects/0/scale", 1e-12), "s.json: objects[0].scale: found 1e-12, expected sizes from 1e-09"},
       {with("/objects/0", {{"shape", "square"}, {"material", "white"}, {"scale", 1e9}, {"translate", {1e9, 0, 0}}}),
        "s.json: objects[0].shape: found a placed vertex with a coordinate of 2e+09, expected -1e+09 to 1e+09"},
-      {with("/lights", json::array({json{{"file", "/nonexistent/lamp.ies"}, {"position", {0, 0, 1}}}})), "/nonexistent/lamp.ies"},
+      {with("/lights", json::array({json{{"file", "/nonexistent/lamp.ies"}, {"position", {0, 0, 1}}}})),
+       "/nonexistent/lamp.ies"},
   };
   for (const auto& [scene, message] : cases) EXPECT_THAT(error_of(scene), HasSubstr(message));
 }
@@ -119,26 +137,34 @@ TEST(ReadScene, RefusesWhatIsNoJson) {
   };
   EXPECT_EQ(error(good().dump()), "none");
   EXPECT_THAT(error("{\"camera\": "), HasSubstr("s.json: is not JSON: parse error at line 1, column 12"));
-  EXPECT_THAT(error(R"({"materials": {"a": {"albedo": 0.1}, "a": {"albedo": 0.9}}, "objects": []})"), HasSubstr("s.json: materials.a: found twice, expected once"));
-  EXPECT_THAT(error("{\"materials\": " + std::string(100000, '[')), HasSubstr("s.json: found objects or arrays more than 64 deep"));
+  EXPECT_THAT(error(R"({"materials": {"a": {"albedo": 0.1}, "a": {"albedo": 0.9}}, "objects": []})"),
+              HasSubstr("s.json: materials.a: found twice, expected once"));
+  EXPECT_THAT(error("{\"materials\": " + std::string(100000, '[')),
+              HasSubstr("s.json: found objects or arrays more than 64 deep"));
 }
 
 TEST(ReadScene, MethodsHaveToSuitTheTable) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "grey.mbsdf", test::make_mbsdf(1, 4, 4, std::vector<float>(3 * 4 * 4 * 4, 0.1f)));
-  const auto scene = [&](const char* sampling) { return with("/materials/white", json{{"file", (folder / "grey.mbsdf").string()}, {"sampling", sampling}}); };
+  const auto scene = [&](const char* sampling) {
+    return with("/materials/white", json{{"file", (folder / "grey.mbsdf").string()}, {"sampling", sampling}});
+  };
   EXPECT_EQ(error_of(scene("cosine")), "none");
-  EXPECT_THAT(error_of(scene("best")), HasSubstr("s.json: materials.white.sampling: found 'best', expected one of default, cosine"));
-  EXPECT_THAT(error_of(scene("rgl")), HasSubstr("s.json: materials.white.sampling: found rgl, expected a method for a mbsdf file"));
+  EXPECT_THAT(error_of(scene("best")),
+              HasSubstr("s.json: materials.white.sampling: found 'best', expected one of default, cosine"));
+  EXPECT_THAT(error_of(scene("rgl")),
+              HasSubstr("s.json: materials.white.sampling: found rgl, expected a method for a mbsdf file"));
 }
 
 TEST(ReadScene, MeshesAndLightsAreRead) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "quad.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
-  test::write_file(folder / "one.ply",
-                   "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
-                   "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
-  test::write_file(folder / "lamp.ies", "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 1 1 2 0 0 0\n1 1 10\n0 45 90\n0\n100 80 0\n");
+  test::write_file(
+      folder / "one.ply",
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
+      "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  test::write_file(folder / "lamp.ies",
+                   "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 1 1 2 0 0 0\n1 1 10\n0 45 90\n0\n100 80 0\n");
   test::write_file(folder / "empty.obj", "v 0 0 0\n");
   json scene = good();
   scene["objects"] = {{{"file", "quad.obj"}, {"material", "white"}}, {{"file", "one.ply"}, {"material", "white"}}};
@@ -168,7 +194,8 @@ TEST(ReadScene, AnEnvironmentFromAFile) {
   const test::TemporaryFolder folder;
   RgbImage image{8, 4, {}};
   for (int row = 0; row < 4; ++row)
-    for (int column = 0; column < 8; ++column) image.pixels.push_back(row < 2 ? glm::vec3(1, 2, 3) : glm::vec3(column < 4 ? 4 : 8));
+    for (int column = 0; column < 8; ++column)
+      image.pixels.push_back(row < 2 ? glm::vec3(1, 2, 3) : glm::vec3(column < 4 ? 4 : 8));
   save_layers(folder / "sky.exr", {{"", {"R", "G", "B"}, &image}});
   const json environment{{"file", "sky.exr"}, {"scale", {1, 0.5, 2}}};
   const Scene read = make_scene(with("/environment", environment), "s.json", folder.path());
@@ -197,7 +224,8 @@ TEST(ReadScene, AMaterialOfFittedLobes) {
   EXPECT_NEAR(white.table->eval(wi, wo).g / model.eval(wi, wo).g, 1, 0.01);
   EXPECT_EQ(MethodBuilder(white.table, white.model).build(white.sampling)->eval(wi, wo), white.table->eval(wi, wo));
   scene["materials"]["white"]["sampling"] = "lobes2";
-  EXPECT_THAT(error_of(scene, folder.path()), HasSubstr("s.json: materials.white.sampling: found lobes2, expected a method for a model file"));
+  EXPECT_THAT(error_of(scene, folder.path()),
+              HasSubstr("s.json: materials.white.sampling: found lobes2, expected a method for a model file"));
 }
 
 }  // namespace

@@ -1,13 +1,15 @@
 // Runs the verbs render and compare of the program GONIO_TOOL as a user does.
 
-#include <gonio/fitting/model/model.h>
-#include "tests/support/table_files.h"
-#include "tools/render/image/exr_image.h"
+#include <cstdlib>
+
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <sys/wait.h>
 
-#include <cstdlib>
-#include <nlohmann/json.hpp>
+#include <gonio/fitting/model/model.h>
+
+#include "tests/support/table_files.h"
+#include "tools/render/image/exr_image.h"
 
 namespace gonio {
 namespace {
@@ -15,11 +17,14 @@ namespace {
 class RenderTool : public testing::Test {
  protected:
   RenderTool() {
-    test::write_file(folder_ / "grey.mbsdf", test::make_mbsdf(1, 6, 8, std::vector<float>(3 * 6 * 6 * 8, 0.5f / static_cast<float>(test::pi))));
+    test::write_file(folder_ / "grey.mbsdf",
+                     test::make_mbsdf(1, 6, 8, std::vector<float>(3 * 6 * 6 * 8, 0.5f / static_cast<float>(test::pi))));
   }
   int run(const std::string& arguments, const std::string& verb = "render") const {
     // An error that is found after long work, not before it, comes as the 124 of timeout.
-    const int status = std::system(("cd '" + folder_.path().string() + "' && timeout 100 '" GONIO_TOOL "' " + verb + " " + arguments + " >out 2>err").c_str());
+    const int status = std::system(("cd '" + folder_.path().string() + "' && timeout 100 '" GONIO_TOOL "' " + verb +
+                                    " " + arguments + " >out 2>err")
+                                       .c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
   std::string text(const std::string& name) const { return test::file_bytes(folder_ / name); }
@@ -34,13 +39,16 @@ TEST_F(RenderTool, AMaterialOnTheDefaultScene) {
   EXPECT_EQ(image.width, 40);
   EXPECT_EQ(image.height, 30);
   for (const glm::vec3& p : image.pixels) EXPECT_GT(p.g, 0.0f);
-  for (const char* channel : {"albedo.R", "normal.X", "variance.G"}) EXPECT_NE(text("a.exr").find(channel), std::string::npos) << channel;
+  for (const char* channel : {"albedo.R", "normal.X", "variance.G"})
+    EXPECT_NE(text("a.exr").find(channel), std::string::npos) << channel;
   ASSERT_EQ(run("--material grey.mbsdf --size 40x30 --seconds 0.2 -o a.png --sampling cosine"), 0) << text("err");
   EXPECT_EQ(text("a.png").substr(1, 3), "PNG");
 }
 
 TEST_F(RenderTool, AScene) {
-  test::write_file(folder_ / "s.json", R"({"camera": {"position": [0, 0, 3], "target": [0, 0, 0], "up": [0, 1, 0], "vertical_fov": 10, "resolution": [8, 8]},
+  test::write_file(
+      folder_ / "s.json",
+      R"({"camera": {"position": [0, 0, 3], "target": [0, 0, 0], "up": [0, 1, 0], "vertical_fov": 10, "resolution": [8, 8]},
     "environment": {"constant": 1}, "materials": {"m": {"file": "grey.mbsdf"}}, "objects": [{"shape": "square", "material": "m"}]})");
   ASSERT_EQ(run("s.json --samples 256 -o a.exr"), 0) << text("err");
   for (const glm::vec3& p : load_rgb(folder_ / "a.exr").pixels) EXPECT_NEAR(p.g, 0.5f, 0.01f);
@@ -53,8 +61,11 @@ TEST_F(RenderTool, MaterialsAndEnvironmentFromFiles) {
   const RgbImage sky{4, 2, std::vector<glm::vec3>(8, glm::vec3(0.5f, 1, 2))};
   save_layers(folder_ / "sky.exr", {{"", {"R", "G", "B"}, &sky}});
   for (const std::string file : {"grey.mbsdf", "stack.exr", "fit.json"}) {
-    test::write_file(folder_ / "s.json", R"({"camera": {"position": [0, 0, 3], "target": [0, 0, 0], "up": [0, 1, 0], "vertical_fov": 10, "resolution": [8, 8]},
-      "environment": {"file": "sky.exr", "turn": 30}, "materials": {"m": {"file": ")" + file + R"("}}, "objects": [{"shape": "square", "material": "m"}]})");
+    test::write_file(
+        folder_ / "s.json",
+        R"({"camera": {"position": [0, 0, 3], "target": [0, 0, 0], "up": [0, 1, 0], "vertical_fov": 10, "resolution": [8, 8]},
+      "environment": {"file": "sky.exr", "turn": 30}, "materials": {"m": {"file": ")" +
+            file + R"("}}, "objects": [{"shape": "square", "material": "m"}]})");
     ASSERT_EQ(run("s.json --samples 256 -o a.exr"), 0) << text("err");
     for (const glm::vec3& p : load_rgb(folder_ / "a.exr").pixels)
       for (int c = 0; c < 3; ++c) EXPECT_NEAR(p[c] / sky.pixels[0][c], 0.5f, 0.01f) << file;
@@ -63,11 +74,16 @@ TEST_F(RenderTool, MaterialsAndEnvironmentFromFiles) {
 
 // The comparison holds what docs/render.md says, and its page needs no other file.
 TEST_F(RenderTool, Compare) {
-  ASSERT_EQ(run("--material grey.mbsdf --size 16x16 --seconds 0.05 --reference-seconds 0.2 --methods default,cosine -o c", "compare"), 0) << text("err");
+  ASSERT_EQ(
+      run("--material grey.mbsdf --size 16x16 --seconds 0.05 --reference-seconds 0.2 --methods default,cosine -o c",
+          "compare"),
+      0)
+      << text("err");
   const nlohmann::json j = nlohmann::json::parse(text("c/compare.json"));
   ASSERT_EQ(j["runs"].size(), 4u);
   for (const nlohmann::json& run : j["runs"]) {
-    for (const char* key : {"method", "strategy", "samples", "seconds", "relmse", "standard_error", "ratio", "relmse_at_equal_samples", "cost_ratio", "convergence"})
+    for (const char* key : {"method", "strategy", "samples", "seconds", "relmse", "standard_error", "ratio",
+                            "relmse_at_equal_samples", "cost_ratio", "convergence"})
       EXPECT_TRUE(run.contains(key)) << key;
     const std::string name = run["method"].get<std::string>() + "_" + run["strategy"].get<std::string>();
     EXPECT_EQ(text("c/" + name + ".png").substr(1, 3), "PNG");
@@ -80,7 +96,8 @@ TEST_F(RenderTool, Compare) {
   EXPECT_NE(text("err").find("--methods: found rgl"), std::string::npos) << text("err");
   EXPECT_EQ(run("--material grey.mbsdf --seconds 0 -o d", "compare"), 1);
   EXPECT_EQ(run("-o d", "compare"), 1);
-  EXPECT_NE(text("err").find("SCENE: found none, expected SCENE.json or --material FILE"), std::string::npos) << text("err");
+  EXPECT_NE(text("err").find("SCENE: found none, expected SCENE.json or --material FILE"), std::string::npos)
+      << text("err");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "d"));
 }
 
@@ -88,7 +105,8 @@ TEST_F(RenderTool, Compare) {
 TEST_F(RenderTool, CompareAStackFile) {
   ASSERT_EQ(run("ggx:alpha=0.15,F0=0.9 -o metal.mbsdf", "synth"), 0) << text("err");
   ASSERT_EQ(run("metal.mbsdf metal.exr --incident 7 --grid 16x16 --interpolation blend", "convert"), 0) << text("err");
-  ASSERT_EQ(run("--material metal.exr --size 24x24 --seconds 0.2 --reference-seconds 1 -o c", "compare"), 0) << text("err");
+  ASSERT_EQ(run("--material metal.exr --size 24x24 --seconds 0.2 --reference-seconds 1 -o c", "compare"), 0)
+      << text("err");
   const nlohmann::json j = nlohmann::json::parse(text("c/compare.json"));
   ASSERT_EQ(j["runs"].size(), 4u);
   EXPECT_GT(j["pixels"], 100);
@@ -96,13 +114,17 @@ TEST_F(RenderTool, CompareAStackFile) {
   EXPECT_EQ(j["runs"][1]["method"], "cosine");
   EXPECT_GT(j["runs"][3]["relmse_at_equal_samples"], 2 * j["runs"][2]["relmse_at_equal_samples"].get<double>());
   EXPECT_EQ(run("--material metal.exr --methods lobes1 -o d", "compare"), 1);
-  EXPECT_NE(text("err").find("--methods: found lobes1, which not every material of the scene has, expected one of default, cosine"), std::string::npos) << text("err");
+  EXPECT_NE(text("err").find(
+                "--methods: found lobes1, which not every material of the scene has, expected one of default, cosine"),
+            std::string::npos)
+      << text("err");
 }
 
 TEST_F(RenderTool, ANameThatIsNotUtf8) {
   const std::string name = "gr\xFFy";
   std::filesystem::rename(folder_ / "grey.mbsdf", folder_ / (name + ".mbsdf"));
-  ASSERT_EQ(run("--material " + name + ".mbsdf --size 8x8 --seconds 0.02 --methods cosine -o c", "compare"), 0) << text("err");
+  ASSERT_EQ(run("--material " + name + ".mbsdf --size 8x8 --seconds 0.02 --methods cosine -o c", "compare"), 0)
+      << text("err");
   EXPECT_EQ(nlohmann::json::parse(text("c/compare.json"))["scene"], "gr\uFFFDy");
 }
 
@@ -114,7 +136,8 @@ TEST_F(RenderTool, OutputsThatCannotBeWrittenAreFoundBeforeTheWork) {
   EXPECT_EQ(run("--material grey.mbsdf --samples 16777216 -o folder.exr"), 1);
   EXPECT_NE(text("err").find("folder.exr: found a folder"), std::string::npos) << text("err");
   EXPECT_EQ(run("--material grey.mbsdf --methods cosine --seconds 100000 -o /proc", "compare"), 1);
-  EXPECT_NE(text("err").find("/proc/compare.html: folder: found one that takes no files"), std::string::npos) << text("err");
+  EXPECT_NE(text("err").find("/proc/compare.html: folder: found one that takes no files"), std::string::npos)
+      << text("err");
   EXPECT_EQ(run("--material grey.mbsdf --methods cosine --seconds 100000 -o grey.mbsdf", "compare"), 1);
   EXPECT_NE(text("err").find("grey.mbsdf: cannot be made a folder"), std::string::npos) << text("err");
 }
@@ -122,7 +145,9 @@ TEST_F(RenderTool, OutputsThatCannotBeWrittenAreFoundBeforeTheWork) {
 TEST_F(RenderTool, AnInputIsNeverReplaced) {
   std::filesystem::create_hard_link(folder_ / "grey.mbsdf", folder_ / "grey.exr");
   EXPECT_EQ(run("--material grey.mbsdf --samples 16777216 -o grey.exr"), 1);
-  EXPECT_NE(text("err").find("grey.exr: output: found the same file as grey.mbsdf, expected another"), std::string::npos) << text("err");
+  EXPECT_NE(text("err").find("grey.exr: output: found the same file as grey.mbsdf, expected another"),
+            std::string::npos)
+      << text("err");
 }
 
 TEST_F(RenderTool, ErrorsAreOneLineAndLeaveNoFile) {
@@ -132,7 +157,9 @@ TEST_F(RenderTool, ErrorsAreOneLineAndLeaveNoFile) {
   const std::pair<const char*, const char*> cases[] = {
       {"s.json --material grey.mbsdf", "SCENE: found one and --material"},
       {"s.json", "s.json: objects: found []"},
-      {"manifest.json", "manifest.json: found a manifest of gonio convert --scene (docs/scene.md), expected a scene of gonio render (docs/render.md)"},
+      {"manifest.json",
+       "manifest.json: found a manifest of gonio convert --scene (docs/scene.md), expected a scene of gonio render "
+       "(docs/render.md)"},
       {"--material none.bsdf", "gonio render: none.bsdf: no such file\n"},
       {"--material grey.mbsdf --samples 0", "--samples: found 0"},
       {"--material grey.mbsdf --sampling best", "--sampling: found 'best', expected one of default, cosine"},

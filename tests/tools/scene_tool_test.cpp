@@ -1,18 +1,20 @@
 // `gonio convert --scene`, run as a user does.
 
-#include <gonio/mapping/base/bytes.h>
-#include <gonio/brdf/exr/stack_file.h>
-#include <gonio/brdf/build/budget/incidence_profile.h>
-#include <gonio/fitting/model/synth.h>
-#include <gonio/mapping/stack/packed_stack.h>
-#include "tests/support/table_files.h"
-#include <gtest/gtest.h>
-#include <sys/wait.h>
-
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+
+#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <sys/wait.h>
+
+#include <gonio/brdf/build/budget/incidence_profile.h>
+#include <gonio/brdf/exr/stack_file.h>
+#include <gonio/fitting/model/synth.h>
+#include <gonio/mapping/base/bytes.h>
+#include <gonio/mapping/stack/packed_stack.h>
+
+#include "tests/support/table_files.h"
 
 namespace gonio {
 namespace {
@@ -33,7 +35,8 @@ class SceneToolTest : public testing::Test {
   }
 
   void write_scene(const json& materials) const {
-    test::write_file(path("scene.json"), json{{"format", "gonio scene"}, {"version", 1}, {"materials", materials}}.dump());
+    test::write_file(path("scene.json"),
+                     json{{"format", "gonio scene"}, {"version", 1}, {"materials", materials}}.dump());
   }
 
   Outcome execute(const std::string& arguments) const {
@@ -56,7 +59,9 @@ class SceneToolTest : public testing::Test {
     EXPECT_FALSE(std::filesystem::exists(path("stacks"))) << arguments;
   }
 
-  json summary(const std::string& folder = "stacks") const { return json::parse(read_bytes(path(folder + "/scene-budget.json"))); }
+  json summary(const std::string& folder = "stacks") const {
+    return json::parse(read_bytes(path(folder + "/scene-budget.json")));
+  }
 
   test::TemporaryFolder folder_;
 };
@@ -77,24 +82,35 @@ TEST_F(SceneToolTest, NamesWhatIsWrongInAManifest) {
   expect("", "is not JSON");
   expect("[]", "the file: found array, expected an object");
   expect("{}", "the file: found none, expected a member 'format'");
-  expect(R"({"format": "gonio model", "version": 1, "materials": []})", R"(format: found "gonio model", expected "gonio scene")");
+  expect(R"({"format": "gonio model", "version": 1, "materials": []})",
+         R"(format: found "gonio model", expected "gonio scene")");
   expect(R"({"format": "gonio scene", "version": 2, "materials": []})", "version: found 2, expected 1");
-  expect(R"({"format": "gonio scene", "version": 1, "material": []})", "the file: found an unknown member 'material', expected one of format, version, materials; did you mean materials?");
-  expect(R"({"materials": {}, "objects": []})", "found a scene of gonio render (docs/render.md), expected a manifest of gonio convert --scene (docs/scene.md)");
+  expect(R"({"format": "gonio scene", "version": 1, "material": []})",
+         "the file: found an unknown member 'material', expected one of format, version, materials; did you mean "
+         "materials?");
+  expect(
+      R"({"materials": {}, "objects": []})",
+      "found a scene of gonio render (docs/render.md), expected a manifest of gonio convert --scene (docs/scene.md)");
   expect(manifest("[]"), "materials: found array, expected an array of at least one");
   expect(manifest("[7]"), "materials[0]: found number, expected an object");
   expect(material(R"("name": "b", "file": "a.mbsdf")"), "materials[1]: found none, expected a member 'share'");
   expect(material(R"("name": "b", "file": "a.mbsdf", "share": "half")"), "materials[1].share: found \"half\"");
-  expect(material(R"("name": "b", "file": "a.mbsdf", "share": -1)"), "materials[1].share: found -1, expected a finite number >= 0");
+  expect(material(R"("name": "b", "file": "a.mbsdf", "share": -1)"),
+         "materials[1].share: found -1, expected a finite number >= 0");
   expect(material(R"("name": "b", "file": "a.mbsdf", "share": null)"), "materials[1].share: found null");
-  expect(material(R"("name": "b", "file": "a.mbsdf", "share": 1, "shares": 1)"), "materials[1]: found an unknown member 'shares', expected one of name, file, share, incidence; did you mean share?");
+  expect(material(R"("name": "b", "file": "a.mbsdf", "share": 1, "shares": 1)"),
+         "materials[1]: found an unknown member 'shares', expected one of name, file, share, incidence; did you mean "
+         "share?");
   expect(material(R"("name": "", "file": "a.mbsdf", "share": 1)"), "materials[1].name: found \"\"");
   expect(material(R"("name": "one", "file": "a.mbsdf", "share": 1)"), "materials[1].name: found 'one' again");
   expect(material(R"("name": "../b", "file": "a.mbsdf", "share": 1)"), "materials[1].name: found '../b'");
   expect(material(R"("name": "b", "file": "a.mbsdf", "share": 1, "incidence": 3)"), "materials[1].incidence: found 3");
-  expect(material(R"("name": "b", "file": "a.mbsdf", "share": 1, "incidence": [])"), "materials[1].incidence: found []");
-  expect(material(R"("name": "b", "file": "a.mbsdf", "share": 1, "incidence": [0, 0])"), "materials[1].incidence: found a sum of 0");
-  expect(material(R"("name": "b", "file": "a.mbsdf", "share": 1, "incidence": [1, -2])"), "materials[1].incidence[1]: found -2");
+  expect(material(R"("name": "b", "file": "a.mbsdf", "share": 1, "incidence": [])"),
+         "materials[1].incidence: found []");
+  expect(material(R"("name": "b", "file": "a.mbsdf", "share": 1, "incidence": [0, 0])"),
+         "materials[1].incidence: found a sum of 0");
+  expect(material(R"("name": "b", "file": "a.mbsdf", "share": 1, "incidence": [1, -2])"),
+         "materials[1].incidence[1]: found -2");
   expect(manifest(R"([{"name": "one", "file": "a.mbsdf", "share": 0}])"), "materials: share: found a sum of 0");
 }
 
@@ -121,7 +137,9 @@ TEST_F(SceneToolTest, AMaterialThatFailsCostsTheOthersNothing) {
                {{"name", "bad"}, {"file", "bad.mbsdf"}, {"share", 1}}});
   const Outcome run = execute("--scene scene.json --budget 60kB -o stacks");
   EXPECT_EQ(run.code, 1);
-  EXPECT_NE(run.err.find("gonio convert: 2 of 3 inputs failed: none.mbsdf: no such file; bad.mbsdf: "), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("gonio convert: 2 of 3 inputs failed: none.mbsdf: no such file; bad.mbsdf: "),
+            std::string::npos)
+      << run.err;
   EXPECT_NE(run.out.find("written: stacks/a.exr\nwritten: stacks/scene-budget.json\n"), std::string::npos) << run.out;
   EXPECT_GT(load_bsdf(path("stacks/a.exr")).bytes(), 0u);
   EXPECT_FALSE(std::filesystem::exists(path("stacks/bad.exr")));

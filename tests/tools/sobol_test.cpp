@@ -1,10 +1,10 @@
 #include "tools/render/trace/sobol.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <set>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 namespace gonio {
 namespace {
@@ -27,7 +27,8 @@ TEST(PathSequence, EveryBlockIsStratifiedInAllElementaryIntervals) {
       for (int bits = 0; bits <= 6; ++bits) {
         std::set<std::pair<int, int>> cells;
         for (const glm::vec2 u : pairs(decision, first, 64))
-          cells.insert({static_cast<int>(u.x * static_cast<float>(1 << bits)), static_cast<int>(u.y * static_cast<float>(1 << (6 - bits)))});
+          cells.insert({static_cast<int>(u.x * static_cast<float>(1 << bits)),
+                        static_cast<int>(u.y * static_cast<float>(1 << (6 - bits)))});
         EXPECT_EQ(cells.size(), 64u) << first << " " << decision << " " << bits;
       }
 }

@@ -1,18 +1,18 @@
-#include "tools/stability/measure_row.h"
-
-#include <gtest/gtest.h>
-
 #include <algorithm>
-#include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 #include <map>
 #include <set>
 #include <type_traits>
 
+#include <boost/math/special_functions/gamma.hpp>
+#include <gtest/gtest.h>
+
 #include <gonio/brdf/proof/statistics/random.h>
 #include <gonio/mapping/diagram/diagram.cpp>  // for Diagram<OperationCounter>
 #include <gonio/mapping/numeric/monotone_root.h>
+
 #include "tools/stability/figures.h"
+#include "tools/stability/measure_row.h"
 
 namespace gonio {
 namespace {
@@ -27,13 +27,12 @@ TEST(Stability, TextbookVariantsFailAndTheLibraryDoesNot) {
     for (const StabilityRow& row : measure_input(input, 56, seed += 1000)) {
       failures[row.variant] += row.fails();
       EXPECT_FALSE(row.library() && row.fails())
-          << row.variant << " on " << row.input << ": error " << row.max_error << " of " << row.bound << ", bias " << row.bias << " +- "
-          << row.standard_error << ", p " << row.chi2_p << ", lost " << row.lost;
+          << row.variant << " on " << row.input << ": error " << row.max_error << " of " << row.bound << ", bias "
+          << row.bias << " +- " << row.standard_error << ", p " << row.chi2_p << ", lost " << row.lost;
     }
   }
   ASSERT_EQ(failures.size(), variant_names().size());
-  for (const auto& [variant, count] : failures)
-    EXPECT_TRUE(count > 0 || variant.rfind("gonio-", 0) == 0) << variant;
+  for (const auto& [variant, count] : failures) EXPECT_TRUE(count > 0 || variant.rfind("gonio-", 0) == 0) << variant;
 }
 
 // Each textbook variant fails in the way that its reason says.
@@ -66,7 +65,7 @@ double rejection_p(const DiagramGrid& grid, double r_power) {
   constexpr int sectors = 24, rings = 20, draws = 300000;
   std::vector<double> ours(sectors * rings), reference(sectors * rings);
   const auto count = [&](std::vector<double>& histogram, double phi, double r) {
-    const int i = std::min(static_cast<int>(phi / (2 * pi<double>) * sectors), sectors - 1);
+    const int i = std::min(static_cast<int>(phi / (2 * pi<double>)*sectors), sectors - 1);
     histogram[static_cast<std::size_t>(i * rings + std::min(static_cast<int>(r * rings), rings - 1))] += 1;
   };
   proof::Random random(17);
@@ -81,8 +80,10 @@ double rejection_p(const DiagramGrid& grid, double r_power) {
       return static_cast<std::size_t>(std::upper_bound(x.begin() + 1, x.end() - 1, t) - x.begin()) - 1;
     };
     const std::size_t i = line(grid.phi, phi), j = line(grid.r, r);
-    const double a = (phi - grid.phi[i]) / (grid.phi[i + 1] - grid.phi[i]), s = (r - grid.r[j]) / (grid.r[j + 1] - grid.r[j]);
-    const double density = (1 - a) * ((1 - s) * grid.at(i, j) + s * grid.at(i, j + 1)) + a * ((1 - s) * grid.at(i + 1, j) + s * grid.at(i + 1, j + 1));
+    const double a = (phi - grid.phi[i]) / (grid.phi[i + 1] - grid.phi[i]),
+                 s = (r - grid.r[j]) / (grid.r[j + 1] - grid.r[j]);
+    const double density = (1 - a) * ((1 - s) * grid.at(i, j) + s * grid.at(i, j + 1)) +
+                           a * ((1 - s) * grid.at(i + 1, j) + s * grid.at(i + 1, j + 1));
     if (peak * random() < density) count(reference, phi, r), ++k;
   }
   double statistic = 0;
@@ -129,10 +130,10 @@ GONIO_COUNT(<, bool)
 GONIO_COUNT(>, bool)
 GONIO_COUNT(>=, bool)
 #undef GONIO_COUNT
-#define GONIO_COUNT(function)                        \
-  OperationCounter function(OperationCounter x) {    \
-    ++OperationCounter::count;                       \
-    return std::function(x.value);                   \
+#define GONIO_COUNT(function)                     \
+  OperationCounter function(OperationCounter x) { \
+    ++OperationCounter::count;                    \
+    return std::function(x.value);                \
   }
 GONIO_COUNT(sqrt)
 GONIO_COUNT(cbrt)
@@ -156,7 +157,11 @@ TEST(Stability, OperationsDoNotDependOnTheData) {
     for (int i = 0; i < 17; ++i) grid.phi.push_back(pi<double> * i / 16);
     for (int j = 0; j < 17; ++j) grid.r.push_back(j / 16.0);
     for (int k = 0; k < 17 * 17; ++k)
-      grid.density.push_back(kind == 0 ? 1 : kind == 1 ? 0.1 + random() : kind == 2 ? std::pow(10, -12 * random()) : k == 100 ? 1e4 : 1);
+      grid.density.push_back(kind == 0   ? 1
+                             : kind == 1 ? 0.1 + random()
+                             : kind == 2 ? std::pow(10, -12 * random())
+                             : k == 100  ? 1e4
+                                         : 1);
     const Diagram<Counted> diagram(grid);
     for (int k = 0; k < 5000; ++k) {
       const double u = random(), v = random();

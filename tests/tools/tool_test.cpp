@@ -1,23 +1,25 @@
 // Runs the program GONIO_TOOL as a user does.
 
-#include <gonio/brdf/table/albedo.h>
-#include <gonio/brdf/build/stack/bsdf_options.h>
-#include <gonio/mapping/base/bytes.h>
-#include <gonio/brdf/exr/stack_file.h>
-#include "tests/support/table_files.h"
-#include <gtest/gtest.h>
-#include <sys/stat.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <glm/common.hpp>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <sstream>
+
+#include <glm/common.hpp>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <gonio/brdf/build/stack/bsdf_options.h>
+#include <gonio/brdf/exr/stack_file.h>
+#include <gonio/brdf/table/albedo.h>
+#include <gonio/mapping/base/bytes.h>
+
+#include "tests/support/table_files.h"
 
 namespace gonio {
 namespace {
@@ -51,8 +53,8 @@ struct Outcome {
 bool is_progress(const std::string& line) {
   const std::string verb = line.substr(0, line.find(' '));
   const std::string verbs[] = {"reading", "building", "fitting", "writing", "computing", "checking"};
-  return std::find(std::begin(verbs), std::end(verbs), verb) != std::end(verbs) &&
-         line.size() > 2 && line.substr(line.size() - 2) == " s";
+  return std::find(std::begin(verbs), std::end(verbs), verb) != std::end(verbs) && line.size() > 2 &&
+         line.substr(line.size() - 2) == " s";
 }
 
 class ToolTest : public testing::Test {
@@ -76,8 +78,8 @@ class ToolTest : public testing::Test {
   /// Runs the program in the test's folder.
   Outcome execute(const std::string& arguments) const {
     const fs::path out = fs::path(folder_) += ".out", err = fs::path(folder_) += ".err";
-    const std::string command = "cd '" + folder_.string() + "' && '" GONIO_TOOL "' " + arguments +
-                                " >'" + out.string() + "' 2>'" + err.string() + "'";
+    const std::string command = "cd '" + folder_.string() + "' && '" GONIO_TOOL "' " + arguments + " >'" +
+                                out.string() + "' 2>'" + err.string() + "'";
     const int status = std::system(command.c_str());
     Outcome run{WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_bytes(out), {}};
     std::istringstream lines(read_bytes(err));
@@ -113,8 +115,7 @@ class ToolTest : public testing::Test {
 
   std::vector<std::string> files() const {
     std::vector<std::string> names;
-    for (const auto& entry : fs::recursive_directory_iterator(folder_))
-      names.push_back(entry.path().string());
+    for (const auto& entry : fs::recursive_directory_iterator(folder_)) names.push_back(entry.path().string());
     std::sort(names.begin(), names.end());
     return names;
   }
@@ -122,9 +123,7 @@ class ToolTest : public testing::Test {
   fs::path folder_;
 };
 
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 /// The albedo that `gonio info` printed for an angle; -1 if there is none.
 glm::vec3 printed_albedo(const std::string& text, int degrees) {
@@ -133,8 +132,7 @@ glm::vec3 printed_albedo(const std::string& text, int degrees) {
   std::getline(lines, line);
   for (int angle = 0; std::getline(lines, line);) {
     glm::vec3 albedo;
-    if (std::istringstream(line) >> angle >> albedo.r >> albedo.g >> albedo.b && angle == degrees)
-      return albedo;
+    if (std::istringstream(line) >> angle >> albedo.r >> albedo.g >> albedo.b && angle == degrees) return albedo;
   }
   return glm::vec3(-1);
 }
@@ -157,8 +155,7 @@ TEST_F(ToolTest, HelpHasExamples) {
   const BsdfOptions defaults;
   EXPECT_TRUE(contains(help, "--incident INT=" + std::to_string(defaults.incident))) << help;
   EXPECT_TRUE(contains(help, "=" + std::to_string(defaults.budget / 1024) + "KiB")) << help;
-  EXPECT_TRUE(contains(
-      help, "[" + std::to_string(defaults.meridians) + "x" + std::to_string(defaults.parallels)))
+  EXPECT_TRUE(contains(help, "[" + std::to_string(defaults.meridians) + "x" + std::to_string(defaults.parallels)))
       << help;
 }
 
@@ -175,8 +172,7 @@ TEST_F(ToolTest, UsageErrors) {
   expect_error("info", {"gonio info: ", "FILE"});
   expect_error("info a.mbsdf b.mbsdf", {"b.mbsdf"});
   expect_error("info a.mbsdf --bogus", {"--bogus"});
-  expect_error("info a.mbsdf --negative maybe",
-               {"--negative: found 'maybe', expected one of zero, fill, reject"});
+  expect_error("info a.mbsdf --negative maybe", {"--negative: found 'maybe', expected one of zero, fill, reject"});
   expect_error("validate", {"FILE"});
   expect_error("convert a.mbsdf", {"gonio convert: ", "OUT"});
   expect_error("convert a.mbsdf b.exr --grid 40", {"--grid: found '40'"});
@@ -195,23 +191,34 @@ TEST_F(ToolTest, UsageErrors) {
 
 TEST_F(ToolTest, WordsThatAreNotKnown) {
   write("a.mbsdf", sample_mbsdf());
-  expect_error("convrt a.mbsdf b.exr", {"found 'convrt', expected one of info, validate, convert, ", "; did you mean convert?"});
+  expect_error("convrt a.mbsdf b.exr",
+               {"found 'convrt', expected one of info, validate, convert, ", "; did you mean convert?"});
   expect_error("ligth info", {"; did you mean light?"});
-  expect_error("light valdate a.ies", {"found 'valdate', expected one of info, validate, convert, plot", "; did you mean validate?"});
+  expect_error("light valdate a.ies",
+               {"found 'valdate', expected one of info, validate, convert, plot", "; did you mean validate?"});
   expect_error("light", {"found no verb, expected one of info, validate, convert, plot"});
   expect_error("--verson", {"found '--verson', expected one of --help, --version; did you mean --version?"});
-  expect_error("convert a.mbsdf b.exr --max-varience 1e-3", {"gonio convert: found '--max-varience', expected one of ", "; did you mean --max-variance?"});
-  expect_error("convert a.mbsdf b.exr --max-varience=1e-3", {"found '--max-varience'", "; did you mean --max-variance?"});
+  expect_error("convert a.mbsdf b.exr --max-varience 1e-3",
+               {"gonio convert: found '--max-varience', expected one of ", "; did you mean --max-variance?"});
+  expect_error("convert a.mbsdf b.exr --max-varience=1e-3",
+               {"found '--max-varience'", "; did you mean --max-variance?"});
   expect_error("info --jsn", {"found '--jsn', expected one of --help, --json, --negative, ", "; did you mean --json?"});
   expect_error("light plot a.ies b.svg --plane 0", {"; did you mean --planes?"});
-  expect_error("convert a.mbsdf b.exr --chart outgoin", {"--chart: found 'outgoin', expected one of outgoing, half, auto; did you mean outgoing?"});
-  expect_error("convert a.mbsdf b.mbsfd", {"extension: found .mbsfd, expected one of .exr, .binary, .mbsdf, .bsdf; did you mean .mbsdf?"});
+  expect_error("convert a.mbsdf b.exr --chart outgoin",
+               {"--chart: found 'outgoin', expected one of outgoing, half, auto; did you mean outgoing?"});
+  expect_error("convert a.mbsdf b.mbsfd",
+               {"extension: found .mbsfd, expected one of .exr, .binary, .mbsdf, .bsdf; did you mean .mbsdf?"});
   expect_error("info a.mbsdf --negative fil", {"expected one of zero, fill, reject; did you mean fill?"});
-  expect_error("render --material a.mbsdf --sampling cosin", {"--sampling: found 'cosin', expected one of default, cosine, ", "; did you mean cosine?"});
-  expect_error("compare --material a.mbsdf --methods default,lobe3 -o c", {"--methods: found 'lobe3', expected one of default, ", "; did you mean lobes3?"});
-  expect_error("fit a.mbsdf --model gxg+lambert", {"unknown lobe 'gxg'; expected one of lambert, ", "; did you mean ggx?"});
-  expect_error("synth ggx:alhpa=0.1 -o b.binary", {"'alhpa'; expected one of alpha, F0, F90, eta, k; did you mean alpha?"});
-  expect_error("light plot a.ies b.svg --normalise flx", {"--normalise: found 'flx', expected one of none, flux, maximum; did you mean flux?"});
+  expect_error("render --material a.mbsdf --sampling cosin",
+               {"--sampling: found 'cosin', expected one of default, cosine, ", "; did you mean cosine?"});
+  expect_error("compare --material a.mbsdf --methods default,lobe3 -o c",
+               {"--methods: found 'lobe3', expected one of default, ", "; did you mean lobes3?"});
+  expect_error("fit a.mbsdf --model gxg+lambert",
+               {"unknown lobe 'gxg'; expected one of lambert, ", "; did you mean ggx?"});
+  expect_error("synth ggx:alhpa=0.1 -o b.binary",
+               {"'alhpa'; expected one of alpha, F0, F90, eta, k; did you mean alpha?"});
+  expect_error("light plot a.ies b.svg --normalise flx",
+               {"--normalise: found 'flx', expected one of none, flux, maximum; did you mean flux?"});
   // Nothing is guessed for a word that resembles none.
   EXPECT_FALSE(contains(expect_error("frobnicate", {"expected one of"}).errors[0], "did you mean"));
 }
@@ -257,8 +264,7 @@ TEST_F(ToolTest, OutputsThatCannotBeWritten) {
   fs::permissions(path("read_only"), fs::perms::owner_read | fs::perms::owner_exec);
   // Permissions do not hold root back; /proc does.
   const std::string read_only = geteuid() == 0 ? "/proc/" : "read_only/";
-  expect_error("convert a.mbsdf b.png",
-               {"b.png: extension: found .png, expected one of .exr, .binary, .mbsdf, .bsdf"});
+  expect_error("convert a.mbsdf b.png", {"b.png: extension: found .png, expected one of .exr, .binary, .mbsdf, .bsdf"});
   expect_error("convert a.mbsdf b", {"b: extension: found none"});
   expect_error("convert a.mbsdf missing/b.exr", {"convert: missing: no such folder"});
   expect_error("convert a.mbsdf missing/b.binary", {"convert: missing: no such folder"});
@@ -271,25 +277,26 @@ TEST_F(ToolTest, OutputsThatCannotBeWritten) {
   }
   expect_error("synth default -o missing/b.binary", {"synth: missing: no such folder"});
   expect_error("synth default -o " + read_only + "b.mbsdf", {read_only + "b.mbsdf"});
-  expect_error("synth default -o b.exr",
-               {"b.exr: extension: found .exr, expected one of .binary, .mbsdf"});
+  expect_error("synth default -o b.exr", {"b.exr: extension: found .exr, expected one of .binary, .mbsdf"});
   fs::permissions(path("read_only"), fs::perms::owner_all);
 }
 
 TEST_F(ToolTest, InputsThatDoNotExist) {
   write("a.mbsdf", sample_mbsdf());
   for (const std::string arguments :
-       {"info none", "convert none b.exr", "convert none b.bsdf", "convert none b.binary", "report none -o r", "report --merge none -o r",
-        "report a.mbsdf --stability none -o r", "fit none", "fit none --table t.md", "ndf none -o n", "render --material none", "render none",
-        "compare none -o c", "compare --material none -o c", "light info none", "light convert none b.ldt", "light sample none",
-        "convert --scene none --budget 1MiB -o s"})
+       {"info none", "convert none b.exr", "convert none b.bsdf", "convert none b.binary", "report none -o r",
+        "report --merge none -o r", "report a.mbsdf --stability none -o r", "fit none", "fit none --table t.md",
+        "ndf none -o n", "render --material none", "render none", "compare none -o c", "compare --material none -o c",
+        "light info none", "light convert none b.ldt", "light sample none", "convert --scene none --budget 1MiB -o s"})
     expect_error(arguments, {": none: no such file"});
   expect_error("synth none.json -o b.binary", {": none.json: no such file"});
   EXPECT_EQ(expect_error("validate none", {"unusable: none"}).out, "none: error: no such file\n");
   EXPECT_EQ(expect_error("light validate none", {}).out, "none: rejected\n  none: no such file\n");
   expect_error("info .", {".: found a folder, expected a file"});
   expect_error("info a.mbsdf/b", {"a.mbsdf/b: no such file"});
-  write("scene.json", R"({"environment": {"file": "sky.exr"}, "materials": {"m": {"albedo": 1}}, "objects": [{"file": "m.ply", "material": "m"}]})");
+  write(
+      "scene.json",
+      R"({"environment": {"file": "sky.exr"}, "materials": {"m": {"albedo": 1}}, "objects": [{"file": "m.ply", "material": "m"}]})");
   expect_error("render scene.json", {": sky.exr: no such file"});
   write("scene.json", R"({"materials": {"m": {"albedo": 1}}, "objects": [{"file": "m.ply", "material": "m"}]})");
   expect_error("render scene.json", {": m.ply: no such file"});
@@ -334,7 +341,8 @@ TEST_F(ToolTest, AVarianceOutOfReach) {
   expect_ok("synth ggx:alpha=0.3,F0=0.5 -o fine.mbsdf");
   expect_ok("convert fine.mbsdf a.mbsdf --grid 12x16");
   const std::string out = execute("convert a.mbsdf a.exr --max-variance 0.001 --budget 2KiB --chart outgoing").out;
-  const std::size_t table = out.find("  a relvar of 0.001 was not reached within 2048 bytes; what was:\n            bytes      relvar");
+  const std::size_t table =
+      out.find("  a relvar of 0.001 was not reached within 2048 bytes; what was:\n            bytes      relvar");
   ASSERT_NE(table, std::string::npos) << out;
   std::istringstream lines(out.substr(out.find("chart\n", table) + 6));
   std::size_t bytes = 0;
@@ -378,7 +386,8 @@ TEST_F(ToolTest, ConvertEachIntoAFolder) {
   EXPECT_TRUE(contains(run.out, "written: out/a.exr\n")) << run.out;
   EXPECT_FALSE(contains(run.out, "bad")) << run.out;
   expect_ok("convert a.mbsdf b.exr --incident 3 --grid 5x6");
-  EXPECT_EQ(load_stack(path("out/a.exr")).bsdf.diagrams.diagrams[1].density, load_stack(path("b.exr")).bsdf.diagrams.diagrams[1].density);
+  EXPECT_EQ(load_stack(path("out/a.exr")).bsdf.diagrams.diagrams[1].density,
+            load_stack(path("b.exr")).bsdf.diagrams.diagrams[1].density);
   EXPECT_EQ(load_stack(path("out/c.exr")).source, "c.bsdf");
   EXPECT_FALSE(fs::exists(path("out/bad.exr")));
 
@@ -399,8 +408,7 @@ TEST_F(ToolTest, FailureKeepsTheOldFile) {
 
 TEST_F(ToolTest, StandardOutputThatFails) {
   write("a.mbsdf", sample_mbsdf());
-  const std::string command =
-      "'" GONIO_TOOL "' info '" + path("a.mbsdf").string() + "' >/dev/full 2>/dev/null";
+  const std::string command = "'" GONIO_TOOL "' info '" + path("a.mbsdf").string() + "' >/dev/full 2>/dev/null";
   const int status = std::system(command.c_str());
   EXPECT_TRUE(WIFEXITED(status));
   EXPECT_EQ(WEXITSTATUS(status), 1);
@@ -420,7 +428,8 @@ TEST_F(ToolTest, InfoOfTables) {
   EXPECT_TRUE(contains(mbsdf, "format      MBSDF\n")) << mbsdf;
   EXPECT_TRUE(contains(mbsdf, "6 x 6 x 8 cells")) << mbsdf;
   EXPECT_TRUE(contains(mbsdf, "theta_i     7.5 to 82.5")) << mbsdf;
-  EXPECT_TRUE(contains(mbsdf, "file        " + std::to_string(sample_mbsdf().size()) + " bytes (3.4 KiB) on disk\n")) << mbsdf;
+  EXPECT_TRUE(contains(mbsdf, "file        " + std::to_string(sample_mbsdf().size()) + " bytes (3.4 KiB) on disk\n"))
+      << mbsdf;
   expect_near(printed_albedo(mbsdf, 30), glm::vec3(0.5f), 1e-4f);
 
   write("a.bsdf", sample_rgl());
@@ -445,15 +454,11 @@ TEST_F(ToolTest, InfoCountsRepairedCells) {
   bytes.replace(bytes.size() - 16, 4, reinterpret_cast<const char*>(&bad), 4);
   write("a.mbsdf", bytes);
   const std::string text = execute("info a.mbsdf --negative fill").out;
-  EXPECT_TRUE(
-      contains(text, "288, of which 1 negative (fill), 1 not finite (fill), 0 missing (fill)"))
-      << text;
-  expect_error("info a.mbsdf --negative reject",
-               {"a.mbsdf: cells: found 1 negative of 288, expected none"});
+  EXPECT_TRUE(contains(text, "288, of which 1 negative (fill), 1 not finite (fill), 0 missing (fill)")) << text;
+  expect_error("info a.mbsdf --negative reject", {"a.mbsdf: cells: found 1 negative of 288, expected none"});
   expect_error("convert a.mbsdf b.exr --nonfinite reject", {"a.mbsdf: cells: found 1 not finite"});
   expect_ok("validate a.mbsdf");  // a repair is a warning
-  EXPECT_TRUE(contains(execute("validate a.mbsdf").out,
-                       "a.mbsdf: warning: cells: found 1 negative of 288"));
+  EXPECT_TRUE(contains(execute("validate a.mbsdf").out, "a.mbsdf: warning: cells: found 1 negative of 288"));
 }
 
 TEST_F(ToolTest, InfoOfSeveralFiles) {
@@ -518,7 +523,8 @@ TEST_F(ToolTest, TransmissionIsNotDroppedSilently) {
   const std::string both = sample_mbsdf() + test::make_mbsdf(0, 1, 1, {0.5f}, "MBSDF_DATA_TRANSMISSION=\n").substr(20);
   write("a.mbsdf", both);
   for (const std::string out : {"o.exr", "o.binary", "o.mbsdf", "o.bsdf"}) {
-    EXPECT_TRUE(contains(all_errors(execute("convert a.mbsdf " + out)), "a.mbsdf: warning: the file has transmission")) << out;
+    EXPECT_TRUE(contains(all_errors(execute("convert a.mbsdf " + out)), "a.mbsdf: warning: the file has transmission"))
+        << out;
     EXPECT_FALSE(contains(all_errors(execute("convert r.mbsdf " + out)), "transmission")) << out;
   }
   EXPECT_TRUE(contains(execute("info a.mbsdf").out, "the transmission of the file is left out"));
@@ -560,15 +566,19 @@ TEST_F(ToolTest, PipesAndPointersAreRefusedByEveryReader) {
   for (const auto& [file, found] : {std::pair("pipe", "found a pipe or a device, expected a file"),
                                     std::pair("pointer", "found a Git LFS pointer in place of the file")}) {
     const std::string name = file;
-    const std::string materials = R"({"materials": {"a": {"albedo": 0.5}}, "camera": {"position": [0, -5, 1], "target": [0, 0, 1], "resolution": [4, 4]}, )";
+    const std::string materials =
+        R"({"materials": {"a": {"albedo": 0.5}}, "camera": {"position": [0, -5, 1], "target": [0, 0, 1], "resolution": [4, 4]}, )";
     write("mesh.json", materials + R"("objects": [{"material": "a", "file": ")" + name + "\"}]}");
-    write("sky.json", materials + R"("environment": {"file": ")" + name + R"("}, "objects": [{"material": "a", "shape": "sphere"}]})");
-    write("lamp.json", materials + R"("lights": [{"file": ")" + name + R"("}], "objects": [{"material": "a", "shape": "sphere"}]})");
-    for (const std::string verb : {"info NAME", "validate NAME", "convert NAME y.exr", "convert --scene NAME -o out --budget 1MiB", "fit NAME -o y.json",
-                                   "ndf NAME -o y.json", "report NAME -o out", "report --merge NAME -o out", "render NAME -o y.exr",
-                                   "render mesh.json -o y.exr", "render sky.json -o y.exr", "render lamp.json -o y.exr",
-                                   "render --material NAME -o y.exr", "compare --material NAME -o out",
-                                   "light info NAME", "light validate NAME", "light convert NAME y.ldt"}) {
+    write("sky.json", materials + R"("environment": {"file": ")" + name +
+                          R"("}, "objects": [{"material": "a", "shape": "sphere"}]})");
+    write("lamp.json",
+          materials + R"("lights": [{"file": ")" + name + R"("}], "objects": [{"material": "a", "shape": "sphere"}]})");
+    for (const std::string verb :
+         {"info NAME", "validate NAME", "convert NAME y.exr", "convert --scene NAME -o out --budget 1MiB",
+          "fit NAME -o y.json", "ndf NAME -o y.json", "report NAME -o out", "report --merge NAME -o out",
+          "render NAME -o y.exr", "render mesh.json -o y.exr", "render sky.json -o y.exr", "render lamp.json -o y.exr",
+          "render --material NAME -o y.exr", "compare --material NAME -o out", "light info NAME", "light validate NAME",
+          "light convert NAME y.ldt"}) {
       std::string command = verb;
       if (const std::size_t at = command.find("NAME"); at != std::string::npos) command.replace(at, 4, name);
       const Outcome run = execute(command);
@@ -583,7 +593,8 @@ TEST_F(ToolTest, InfoNamesFlatRegionsAndNegativeCells) {
   std::vector<float> values;
   for (int i = 0; i < 60; ++i)
     for (int o = 0; o < 60; ++o)
-      for (int p = 0; p < 4; ++p) values.push_back(p == 0 ? -0.1f : 0.1f + 0.01f * static_cast<float>(std::min(i, 30) + o));
+      for (int p = 0; p < 4; ++p)
+        values.push_back(p == 0 ? -0.1f : 0.1f + 0.01f * static_cast<float>(std::min(i, 30) + o));
   write("a.mbsdf", test::make_mbsdf(0, 60, 4, values));
   const std::string text = execute("info a.mbsdf").out;
   EXPECT_TRUE(contains(text, "f_r does not change with theta_i from 46 degrees on")) << text;
@@ -612,9 +623,9 @@ TEST_F(ToolTest, InfoOfAStack) {
   write("a.mbsdf", sample_mbsdf());
   expect_ok("convert a.mbsdf a.exr --incident 3 --grid 5x6");
   const std::string text = execute("info a.exr").out;
-  for (const char* part : {"name        a\n", "source      a.mbsdf\n", "chart       outgoing\n",
-                           "size        3 diagrams", "theta_i     0 to 89.5\n", "in memory   ", "as it is sampled\n",
-                           "colour      16 x 8 cells"}) {
+  for (const char* part :
+       {"name        a\n", "source      a.mbsdf\n", "chart       outgoing\n", "size        3 diagrams",
+        "theta_i     0 to 89.5\n", "in memory   ", "as it is sampled\n", "colour      16 x 8 cells"}) {
     EXPECT_TRUE(contains(text, part)) << part << "\nin " << text;
   }
   expect_near(printed_albedo(text, 30), glm::vec3(0.5f), 0.01f);
@@ -627,9 +638,14 @@ TEST_F(ToolTest, InfoOfAStack) {
 
 TEST_F(ToolTest, CommentsSayHowAStackWasMade) {
   write("a.mbsdf", sample_mbsdf());
-  const std::string made = execute("convert a.mbsdf a.exr --max-variance 0.01 --chart half --comment 'measured by us' --comment CC0").out;
+  const std::string made =
+      execute("convert a.mbsdf a.exr --max-variance 0.01 --chart half --comment 'measured by us' --comment CC0").out;
   const std::string comments = load_stack(path("a.exr")).comments;
-  EXPECT_EQ(comments.rfind("made of a.mbsdf by gonio " GONIO_VERSION " convert\n--max-variance 0.01 --chart half: relvar at most ", 0), 0u) << comments;
+  EXPECT_EQ(
+      comments.rfind(
+          "made of a.mbsdf by gonio " GONIO_VERSION " convert\n--max-variance 0.01 --chart half: relvar at most ", 0),
+      0u)
+      << comments;
   EXPECT_TRUE(contains(comments, " %\nmeasured by us\nCC0")) << comments;
   const std::size_t from = comments.find("relvar");  // the figures are those that convert prints
   EXPECT_TRUE(contains(made, comments.substr(from, comments.find('\n', from) - from) + "\n")) << made;
@@ -642,7 +658,8 @@ TEST_F(ToolTest, CommentsSayHowAStackWasMade) {
   expect_ok("convert a.exr c.exr --comment 'and more'");
   EXPECT_EQ(load_stack(path("c.exr")).comments, comments + "\nand more");
   expect_ok("convert a.mbsdf hand.exr --incident 3 --grid 5x6");
-  EXPECT_TRUE(contains(load_stack(path("hand.exr")).comments, "sizes by hand, errors not measured: at most 5 meridians, 6 parallels, 3 incident angles"));
+  EXPECT_TRUE(contains(load_stack(path("hand.exr")).comments,
+                       "sizes by hand, errors not measured: at most 5 meridians, 6 parallels, 3 incident angles"));
   expect_error("convert a.exr d.exr --comment ''", {"--comment: found no text"});
   expect_error("convert a.exr d.exr --comment 'one\ntwo'", {"--comment: found control characters"});
 }
@@ -730,8 +747,7 @@ TEST_F(ToolTest, RglToMerlKeepsTheAlbedo) {
 TEST_F(ToolTest, SynthListsModels) {
   const Outcome run = execute("synth --list");
   EXPECT_EQ(run.code, 0);
-  for (const char* part :
-       {"ggx: ", "alpha      0.2      0.002 to 2 (slope)", "lambert: ", "default is "}) {
+  for (const char* part : {"ggx: ", "alpha      0.2      0.002 to 2 (slope)", "lambert: ", "default is "}) {
     EXPECT_TRUE(contains(run.out, part)) << run.out;
   }
 }
@@ -868,11 +884,9 @@ const Damage damages[] = {
     {"MerlMagic", Format::merl, other_magic, "dimensions: found 305419896 x 90 x 180"},
     {"MerlDimensions", Format::merl, [](const std::string& good) { return replaced(good, 8, 90); },
      "dimensions: found 90 x 90 x 90, expected 90 x 90 x 180"},
-    {"MerlOtherVariant", Format::merl,
-     [](const std::string& good) { return replaced(good, 8, 360); },
+    {"MerlOtherVariant", Format::merl, [](const std::string& good) { return replaced(good, 8, 360); },
      "file size: found 34992012 bytes, expected 69984012"},
-    {"MerlNan", Format::merl, [](const std::string& good) { return all_nan(good, 12); },
-     "no valid one"},
+    {"MerlNan", Format::merl, [](const std::string& good) { return all_nan(good, 12); }, "no valid one"},
     {"MerlLonger", Format::merl, [](const std::string& good) { return good + "x"; }, "file size"},
 
     {"RglHalf", Format::rgl, half_of, "cut off"},
@@ -883,16 +897,13 @@ const Damage damages[] = {
     {"RglDimensions", Format::rgl, [](const std::string&) { return two_luminances(); },
      "luminance: found f32 [1, 2, 3, 2], expected f32 [1, 3, "},
     {"RglNan", Format::rgl,
-     [](const std::string&) {
-       return test::make_rgl(glm::vec3(std::numeric_limits<float>::quiet_NaN())).bytes();
-     },
+     [](const std::string&) { return test::make_rgl(glm::vec3(std::numeric_limits<float>::quiet_NaN())).bytes(); },
      "no valid one"},
-    {"RglAllNan", Format::rgl,
-     [](const std::string& good) { return all_nan(good, good.find("uniform") + 7); }, "no valid value"},
+    {"RglAllNan", Format::rgl, [](const std::string& good) { return all_nan(good, good.find("uniform") + 7); },
+     "no valid value"},
 
     {"MbsdfHalf", Format::mbsdf, half_of, "reflection values: found "},
-    {"MbsdfLastByte", Format::mbsdf, without_last_byte,
-     "reflection values: found 3455 bytes, expected 3456"},
+    {"MbsdfLastByte", Format::mbsdf, without_last_byte, "reflection values: found 3455 bytes, expected 3456"},
     {"MbsdfHeader", Format::mbsdf, first_ten, "format: found a file that starts with \"NVIDIA ARC"},
     {"MbsdfEmpty", Format::mbsdf, empty, "format: found an empty file"},
     {"MbsdfMagic", Format::mbsdf, other_magic, "format: found a file that starts with"},
@@ -902,11 +913,9 @@ const Damage damages[] = {
     {"MbsdfHugeDimensions", Format::mbsdf,
      [](const std::string& good) { return replaced(good, mbsdf_header(good) + 8, 0xffffffff); },
      "reflection n_phi: found 4294967295"},
-    {"MbsdfType", Format::mbsdf,
-     [](const std::string& good) { return replaced(good, mbsdf_header(good), 9); },
+    {"MbsdfType", Format::mbsdf, [](const std::string& good) { return replaced(good, mbsdf_header(good), 9); },
      "reflection type: found 9"},
-    {"MbsdfNan", Format::mbsdf,
-     [](const std::string& good) { return all_nan(good, mbsdf_header(good) + 12); },
+    {"MbsdfNan", Format::mbsdf, [](const std::string& good) { return all_nan(good, mbsdf_header(good) + 12); },
      "no valid one"},
 
     {"StackHalf", Format::stack, half_of, "stack file: found "},
@@ -935,17 +944,14 @@ TEST_F(ToolTest, ValidateNamesAMisleadingExtension) {
   write("a.mbsdf", sample_mbsdf());
   expect_ok("convert a.mbsdf a.exr --incident 2");
   const std::string stack = read_bytes(path("a.exr"));
-  const std::pair<std::string, std::string> cases[] = {{sample_mbsdf(), ".mbsdf"},
-                                                       {sample_rgl(), ".bsdf"},
-                                                       {sample_merl(), ".binary"},
-                                                       {stack, ".exr"}};
+  const std::pair<std::string, std::string> cases[] = {
+      {sample_mbsdf(), ".mbsdf"}, {sample_rgl(), ".bsdf"}, {sample_merl(), ".binary"}, {stack, ".exr"}};
   for (const auto& [bytes, right] : cases) {
     for (const std::string wrong : {".mbsdf", ".bsdf", ".binary", ".exr"}) {
       if (wrong == right) continue;
       write("b" + wrong, bytes);
       const Outcome run = expect_error("validate b" + wrong, {"unusable: b" + wrong});
-      EXPECT_TRUE(contains(
-          run.out, "b" + wrong + ": error: extension: found " + wrong + ", expected " + right))
+      EXPECT_TRUE(contains(run.out, "b" + wrong + ": error: extension: found " + wrong + ", expected " + right))
           << run.out;
       expect_ok("info b" + wrong);  // known by its content
     }
@@ -957,8 +963,7 @@ TEST_F(ToolTest, ValidateNamesAMisleadingExtension) {
 TEST_F(ToolTest, ValidateGoesOnAfterABadFile) {
   write("a.mbsdf", sample_mbsdf());
   write("b.mbsdf", "");
-  const Outcome run =
-      expect_error("validate missing b.mbsdf a.mbsdf .", {"unusable: missing, b.mbsdf, ."});
+  const Outcome run = expect_error("validate missing b.mbsdf a.mbsdf .", {"unusable: missing, b.mbsdf, ."});
   EXPECT_TRUE(contains(run.out, "missing: error: ")) << run.out;
   EXPECT_TRUE(contains(run.out, "b.mbsdf: error: ")) << run.out;
   EXPECT_TRUE(contains(run.out, "a.mbsdf: ok\n")) << run.out;
@@ -975,9 +980,8 @@ TEST_F(ToolTest, ValidateDoubtsAStack) {
   save_stack(path("b.exr"), file);
   const Outcome run = execute("validate b.exr");
   EXPECT_EQ(run.code, 0);
-  for (const char* part :
-       {"warning: diagram 1: found densities with integral 2,",
-        "warning: theta_i: found a last diagram at 11.46", "warning: colour: found none"}) {
+  for (const char* part : {"warning: diagram 1: found densities with integral 2,",
+                           "warning: theta_i: found a last diagram at 11.46", "warning: colour: found none"}) {
     EXPECT_TRUE(contains(run.out, part)) << run.out;
   }
 }
@@ -1062,17 +1066,21 @@ TEST_F(ToolTest, MergesReports) {
   EXPECT_LT(json.find("chrome"), json.find("gold"));
   EXPECT_NE(json.find("chrome"), json.rfind("chrome"));
   EXPECT_TRUE(contains(text, "3 materials"));
-  EXPECT_TRUE(contains(text, "| [chrome](../x/report.html) | merl | displacement | outgoing | 50 | 0.01 | 2 |")) << text;
+  EXPECT_TRUE(contains(text, "| [chrome](../x/report.html) | merl | displacement | outgoing | 50 | 0.01 | 2 |"))
+      << text;
   EXPECT_TRUE(contains(read_bytes(path("all/report.html")), "slow"));
   write("text.json", "no report");
-  expect_error("report --merge text.json none.json -o two", {"2 of 2 inputs failed: text.json: is not JSON", "; none.json: no such file"});
+  expect_error("report --merge text.json none.json -o two",
+               {"2 of 2 inputs failed: text.json: is not JSON", "; none.json: no such file"});
   const Outcome partly = execute("report --merge text.json b.json -o two");
   EXPECT_EQ(partly.code, 1);
   ASSERT_EQ(partly.errors.size(), 1u);
-  EXPECT_TRUE(contains(partly.errors[0], "gonio report: 1 of 2 inputs failed: text.json: is not JSON")) << partly.errors[0];
+  EXPECT_TRUE(contains(partly.errors[0], "gonio report: 1 of 2 inputs failed: text.json: is not JSON"))
+      << partly.errors[0];
   EXPECT_TRUE(contains(partly.out, "written: two/report.html")) << partly.out;
   EXPECT_TRUE(contains(read_bytes(path("two/report.md")), "1 materials")) << read_bytes(path("two/report.md"));
-  EXPECT_TRUE(contains(read_bytes(path("two/report.md")), "| [gold](../report.html) |")) << read_bytes(path("two/report.md"));
+  EXPECT_TRUE(contains(read_bytes(path("two/report.md")), "| [gold](../report.html) |"))
+      << read_bytes(path("two/report.md"));
   write("list.json", "[1]");
   expect_error("report --merge list.json -o three", {"list.json: materials"});
   write("old.json", "{\"gonio_version\": \"0.0.1\", \"materials\": [], \"lights\": []}");

@@ -2,6 +2,7 @@
 #include <benchmark/benchmark.h>
 
 #include <gonio/mapping/stack/packed_stack.h>
+
 #include "tools/bench/stacks.h"
 
 namespace gonio::bench {

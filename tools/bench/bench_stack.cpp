@@ -1,11 +1,12 @@
 // One diagram and stacks, scalar and batch: what a look-up costs.
-#include <benchmark/benchmark.h>
-
 #include <array>
 #include <memory>
 #include <string>
 
+#include <benchmark/benchmark.h>
+
 #include <gonio/brdf/batch/batch_stack.h>
+
 #include "tools/bench/stacks.h"
 
 namespace gonio::bench {
@@ -29,8 +30,9 @@ void forward_halton(benchmark::State& state) {
 }
 
 void forward(benchmark::State& state) {
-  const Stack<float> stack(lobe_stack(1, static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), Chart::outgoing),
-                           Interpolation::nearest);
+  const Stack<float> stack(
+      lobe_stack(1, static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), Chart::outgoing),
+      Interpolation::nearest);
   const Queries q(stack, queries);
   for (auto _ : state)
     for (std::size_t k = 0; k < queries; ++k) {
@@ -41,8 +43,9 @@ void forward(benchmark::State& state) {
 }
 
 void inverse(benchmark::State& state) {
-  const Stack<float> stack(lobe_stack(1, static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), Chart::outgoing),
-                           Interpolation::nearest);
+  const Stack<float> stack(
+      lobe_stack(1, static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), Chart::outgoing),
+      Interpolation::nearest);
   const Queries q(stack, queries);
   for (auto _ : state)
     for (std::size_t k = 0; k < queries; ++k) {
@@ -53,8 +56,9 @@ void inverse(benchmark::State& state) {
 }
 
 void forward_batch(benchmark::State& state) {
-  const Stack<float> stack(lobe_stack(1, static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), Chart::outgoing),
-                           Interpolation::nearest);
+  const Stack<float> stack(
+      lobe_stack(1, static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), Chart::outgoing),
+      Interpolation::nearest);
   const BatchStack batch(stack);
   Queries q(stack, queries);
   for (auto _ : state)
@@ -63,8 +67,9 @@ void forward_batch(benchmark::State& state) {
 }
 
 void inverse_batch(benchmark::State& state) {
-  const Stack<float> stack(lobe_stack(1, static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), Chart::outgoing),
-                           Interpolation::nearest);
+  const Stack<float> stack(
+      lobe_stack(1, static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), Chart::outgoing),
+      Interpolation::nearest);
   const BatchStack batch(stack);
   Queries q(stack, queries);
   for (auto _ : state)
@@ -168,7 +173,8 @@ const int registered = [] {
       diagrams(benchmark::RegisterBenchmark(("pdf" + name).c_str(), pdf, i, chart));
       diagrams(benchmark::RegisterBenchmark(("invert" + name).c_str(), invert, i, chart));
       if (i == Interpolation::mixture) continue;
-      for (const auto& [call, verb] : {std::pair{Call::sample, "sample"}, {Call::pdf, "pdf"}, {Call::invert, "invert"}}) {
+      for (const auto& [call, verb] :
+           {std::pair{Call::sample, "sample"}, {Call::pdf, "pdf"}, {Call::invert, "invert"}}) {
         auto* b = benchmark::RegisterBenchmark((std::string(verb) + "_batch" + name).c_str(), batch, call, i, chart);
         for (const int count : {2, 8, 32, 128}) b->Args({count, 4096});
         for (const int size : {1, 16, 64, 256}) b->Args({32, size});

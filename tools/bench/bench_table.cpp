@@ -1,20 +1,21 @@
 // Tables: a file of RGL that GONIO_TEST_DATA has (none: skipped), made-up ones in the layouts of MERL and MBSDF, and
 // BSDFs with RGB weights, in plain scalar code, one at a time and in batches, self-contained and backed by a table.
-#include <benchmark/benchmark.h>
-
 #include <cstdlib>
 #include <memory>
 #include <string>
 
-#include <gonio/brdf/proof/samplers/baseline.h>
+#include <benchmark/benchmark.h>
+
 #include <gonio/brdf/bsdf/bsdf.h>
-#include <gonio/brdf/build/stack/build_stack.h>
 #include <gonio/brdf/build/compact/colour_of_table.h>
 #include <gonio/brdf/build/compact/fit_compact.h>
+#include <gonio/brdf/build/stack/build_stack.h>
 #include <gonio/brdf/proof/gallery.h>
-#include <gonio/brdf/proof/statistics/random.h>
+#include <gonio/brdf/proof/samplers/baseline.h>
 #include <gonio/brdf/proof/samplers/stack_bsdf.h>
+#include <gonio/brdf/proof/statistics/random.h>
 #include <gonio/brdf/resample/table_resample.h>
+
 #include "tools/bench/stacks.h"
 
 namespace gonio::bench {
@@ -88,7 +89,8 @@ const BrdfTable& made_grid() {
 }
 void grid_eval(benchmark::State& state) { evaluate(state, std::make_shared<const BrdfTable>(made_grid())); }
 void merl_eval(benchmark::State& state) {
-  static const auto table = std::make_shared<const BrdfTable>(MerlTable(sample_as_merl(made_grid()), {}), BrdfTable::Info{});
+  static const auto table =
+      std::make_shared<const BrdfTable>(MerlTable(sample_as_merl(made_grid()), {}), BrdfTable::Info{});
   evaluate(state, table);
 }
 
@@ -97,7 +99,8 @@ BsdfData coloured(Interpolation interpolation, Chart chart) {
   const StackGrid grid = lobe_stack(32, 33, 33, chart);
   std::vector<float> theta_i;
   for (const double theta : grid.theta_i) theta_i.push_back(static_cast<float>(theta));
-  return {grid, interpolation, Storage::float32, Colour(theta_i, 8, std::vector<glm::vec3>(32 * 32, glm::vec3(0.5f, 0.4f, 0.3f)))};
+  return {grid, interpolation, Storage::float32,
+          Colour(theta_i, 8, std::vector<glm::vec3>(32 * 32, glm::vec3(0.5f, 0.4f, 0.3f)))};
 }
 
 enum class Call { sample, pdf, eval };
@@ -138,7 +141,8 @@ void in_batches(benchmark::State& state, Call call, const Bsdf& bsdf) {
 /// By StackBsdf; by Bsdf, one at a time and in batches.
 enum class Form { scalar, one, batch };
 constexpr std::pair<Form, const char*> forms[] = {{Form::scalar, "_scalar"}, {Form::one, ""}, {Form::batch, "_batch"}};
-void look_up(benchmark::State& state, Form form, Call call, const BsdfData& data, const std::shared_ptr<const BrdfTable>& table = nullptr) {
+void look_up(benchmark::State& state, Form form, Call call, const BsdfData& data,
+             const std::shared_ptr<const BrdfTable>& table = nullptr) {
   if (form == Form::scalar) one_by_one(state, call, StackBsdf(data, table));
   if (form == Form::one) one_by_one(state, call, Bsdf(data, table));
   if (form == Form::batch) in_batches(state, call, Bsdf(data, table));

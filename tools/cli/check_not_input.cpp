@@ -17,7 +17,9 @@ bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
 
 void check_not_input(const std::filesystem::path& output, const std::vector<std::filesystem::path>& inputs) {
   for (const auto& input : inputs) {
-    if (same_file(output, input)) throw Error(output.string() + ": output: found the same file as " + input.string() + ", expected another: it would be replaced");
+    if (same_file(output, input))
+      throw Error(output.string() + ": output: found the same file as " + input.string() +
+                  ", expected another: it would be replaced");
   }
 }
 

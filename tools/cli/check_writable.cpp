@@ -1,5 +1,6 @@
-#include <gonio/mapping/base/atomic_file.h>
 #include "tools/cli/check_writable.h"
+
+#include <gonio/mapping/base/atomic_file.h>
 
 namespace gonio {
 

@@ -1,8 +1,9 @@
-#include <gonio/mapping/base/bytes.h>
-#include <gonio/fitting/model/synth.h>
 #include "tools/cli/input.h"
 
 #include <cstdio>
+
+#include <gonio/fitting/model/synth.h>
+#include <gonio/mapping/base/bytes.h>
 
 namespace gonio {
 namespace {
@@ -31,8 +32,8 @@ BrdfTable load_input(const std::filesystem::path& path, const CellPolicies& poli
   const LobeModel model = load_model(path);
   MerlTable table(synthesize_merl(model), policies);
   const CellCounts cells = table.cells();
-  return BrdfTable(std::move(table), {path.stem().string(), path.string(), "model", describe(model),
-                                      regular_file_size(path), cells});
+  return BrdfTable(std::move(table),
+                   {path.stem().string(), path.string(), "model", describe(model), regular_file_size(path), cells});
 }
 
 }  // namespace gonio

@@ -1,9 +1,9 @@
 #pragma once
 
+#include <filesystem>
+
 #include <gonio/brdf/table/table.h>
 #include <gonio/fitting/model/model.h>
-
-#include <filesystem>
 
 namespace gonio {
 

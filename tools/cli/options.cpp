@@ -1,14 +1,17 @@
-#include <gonio/mapping/base/atomic_file.h>
-#include <gonio/mapping/base/did_you_mean.h>
-#include <gonio/mapping/base/error.h>
-#include "tools/cli/number.h"
 #include "tools/cli/options.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cstdint>
+
+#include <CLI/CLI.hpp>
+
+#include <gonio/mapping/base/atomic_file.h>
+#include <gonio/mapping/base/did_you_mean.h>
+#include <gonio/mapping/base/error.h>
+
+#include "tools/cli/number.h"
 
 namespace gonio {
 
@@ -59,7 +62,8 @@ void add_stack_request(CLI::App& verb, StackRequest& request) {
       ->group(size);
   verb.add_option_function<std::string>(
           "--budget", [&request](const std::string& text) { request.budget = parse_bytes("--budget", text); },
-          "At most this much memory [256KiB]; without --max-variance, the least evaluation error within it. With --scene, "
+          "At most this much memory [256KiB]; without --max-variance, the least evaluation error within it. With "
+          "--scene, "
           "of all stacks together")
       ->type_name("SIZE")
       ->group(size);
@@ -105,7 +109,8 @@ void add_stack_options(CLI::App& verb, BsdfOptions& stack) {
   verb.add_option_function<double>(
           "--tolerance",
           [&stack](double value) {
-            if (!(value > 0)) throw CLI::ValidationError("--tolerance", "found " + number(value, 4) + ", expected more than 0");
+            if (!(value > 0))
+              throw CLI::ValidationError("--tolerance", "found " + number(value, 4) + ", expected more than 0");
             stack.max_variance = value;
           },
           "Relative variance that is good enough")
@@ -141,15 +146,12 @@ std::size_t parse_bytes(const std::string& option, const std::string& text) {
   const auto parsed = std::from_chars(text.data(), end, number);
   const std::string unit(parsed.ptr, end);
   for (const auto& [name, factor] : units) {
-    if (parsed.ec == std::errc() && unit == name && number <= SIZE_MAX / factor)
-      return number * factor;
+    if (parsed.ec == std::errc() && unit == name && number <= SIZE_MAX / factor) return number * factor;
   }
-  throw CLI::ValidationError(option,
-                             "found '" + text + "', expected bytes such as 500000 or 480KiB");
+  throw CLI::ValidationError(option, "found '" + text + "', expected bytes such as 500000 or 480KiB");
 }
 
-std::string checked_extension(const std::filesystem::path& output,
-                              const std::vector<std::string>& extensions) {
+std::string checked_extension(const std::filesystem::path& output, const std::vector<std::string>& extensions) {
   std::string extension = output.extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   if (std::find(extensions.begin(), extensions.end(), extension) == extensions.end()) {

@@ -1,9 +1,5 @@
 #pragma once
 
-#include <gonio/brdf/build/stack/build_stack.h>
-
-#include <CLI/App.hpp>
-#include <CLI/Validators.hpp>
 #include <cstddef>
 #include <filesystem>
 #include <initializer_list>
@@ -11,6 +7,11 @@
 #include <string>
 #include <utility>
 #include <vector>
+
+#include <CLI/App.hpp>
+#include <CLI/Validators.hpp>
+
+#include <gonio/brdf/build/stack/build_stack.h>
 
 namespace gonio {
 
@@ -57,7 +58,6 @@ std::size_t parse_bytes(const std::string& option, const std::string& text);
 /// The extension of an output file in lower case. Called before the work, so that it is not in
 /// vain.
 /// @throws Error if it is none of `extensions`, or if the folder does not exist.
-std::string checked_extension(const std::filesystem::path& output,
-                              const std::vector<std::string>& extensions);
+std::string checked_extension(const std::filesystem::path& output, const std::vector<std::string>& extensions);
 
 }  // namespace gonio

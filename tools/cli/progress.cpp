@@ -1,8 +1,9 @@
 #include "tools/cli/progress.h"
-#include <unistd.h>
 
 #include <chrono>
 #include <cstdio>
+
+#include <unistd.h>
 
 namespace gonio {
 
@@ -31,8 +32,7 @@ void ProgressLine::run() {
     const auto elapsed = std::chrono::steady_clock::now() - start;
     const double seconds = std::chrono::duration<double>(elapsed).count(), share = share_;
     if (share >= 0) {
-      std::fprintf(stderr, "%s%s: %.0f %%, %.0f s%s", begin, task_.c_str(), 100 * share, seconds,
-                   end);
+      std::fprintf(stderr, "%s%s: %.0f %%, %.0f s%s", begin, task_.c_str(), 100 * share, seconds, end);
     } else {
       std::fprintf(stderr, "%s%s: %.0f s%s", begin, task_.c_str(), seconds, end);
     }

@@ -1,20 +1,22 @@
-#include <gonio/brdf/exr/stack_file.h>
-#include <gonio/brdf/resample/rgl_resample.h>
-#include <gonio/brdf/formats/rgl/rgl_write.h>
-#include <gonio/brdf/formats/sniff.h>
-#include <gonio/fitting/model/model.h>
-#include <gonio/mapping/base/error.h>
 #include "tools/convert/convert_rgl.h"
-#include "tools/cli/input.h"
-#include "tools/cli/progress.h"
 
 #include <cstdio>
+
+#include <gonio/brdf/exr/stack_file.h>
+#include <gonio/brdf/formats/rgl/rgl_write.h>
+#include <gonio/brdf/formats/sniff.h>
+#include <gonio/brdf/resample/rgl_resample.h>
+#include <gonio/fitting/model/model.h>
+#include <gonio/mapping/base/error.h>
+
+#include "tools/cli/input.h"
+#include "tools/cli/progress.h"
 
 namespace gonio {
 namespace {
 
-RglFile resample(const std::filesystem::path& in, const std::filesystem::path& out,
-                 const Reflectance& f_r, const std::string& description) {
+RglFile resample(const std::filesystem::path& in, const std::filesystem::path& out, const Reflectance& f_r,
+                 const std::string& description) {
   ProgressLine progress("writing " + out.string());
   const std::string text = description.empty() ? in.stem().string() : description;
   const RglSize size;
@@ -22,18 +24,18 @@ RglFile resample(const std::filesystem::path& in, const std::filesystem::path& o
   return file;
 }
 
-RglFile to_rgl(const std::filesystem::path& in, const std::filesystem::path& out,
-               const CellPolicies& policies, bool rgb_only) {
+RglFile to_rgl(const std::filesystem::path& in, const std::filesystem::path& out, const CellPolicies& policies,
+               bool rgb_only) {
   if (is_exr(in)) {
     const StackFile stack = load_stack(in);
     const Bsdf bsdf = load_bsdf(in);
-    return resample(in, out, [&](const auto& wi, const auto& wo) { return bsdf.eval(wi, wo); },
-                    stack.name);
+    return resample(
+        in, out, [&](const auto& wi, const auto& wo) { return bsdf.eval(wi, wo); }, stack.name);
   }
   if (is_model_file(in)) {
     const LobeModel model = load_model(in);
-    return resample(in, out, [&](const auto& wi, const auto& wo) { return model.eval(wi, wo); },
-                    describe(model));
+    return resample(
+        in, out, [&](const auto& wi, const auto& wo) { return model.eval(wi, wo); }, describe(model));
   }
   if (sniff_format(in) == TableFormat::rgl) {
     load_input(in);  // what cannot be used is not copied either
@@ -45,18 +47,18 @@ RglFile to_rgl(const std::filesystem::path& in, const std::filesystem::path& out
     return file;
   }
   const BrdfTable table = load_input(in, policies);
-  return resample(in, out, [&](const auto& wi, const auto& wo) { return table.eval(wi, wo); },
-                  table.info().description);
+  return resample(
+      in, out, [&](const auto& wi, const auto& wo) { return table.eval(wi, wo); }, table.info().description);
 }
 
 }  // namespace
 
-void convert_to_rgl(const std::filesystem::path& in, const std::filesystem::path& out,
-                    const CellPolicies& policies, bool rgb_only) {
+void convert_to_rgl(const std::filesystem::path& in, const std::filesystem::path& out, const CellPolicies& policies,
+                    bool rgb_only) {
   const RglFile file = to_rgl(in, out, policies, rgb_only);
   write_rgl(out, file, rgb_only ? RglColour::rgb : RglColour::rgb_and_spectra);
-  std::printf("%zu incident angles, colours %d x %d%s\n", file.theta_i.size(), file.colour_height,
-              file.colour_width, rgb_only ? "" : " with spectra");
+  std::printf("%zu incident angles, colours %d x %d%s\n", file.theta_i.size(), file.colour_height, file.colour_width,
+              rgb_only ? "" : " with spectra");
 }
 
 }  // namespace gonio

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <gonio/brdf/formats/cell_policies.h>
-
 #include <filesystem>
+
+#include <gonio/brdf/formats/cell_policies.h>
 
 namespace gonio {
 
@@ -10,7 +10,7 @@ namespace gonio {
 /// and sigma (write_rgl()); a self-contained stack file, a table or a model is resampled.
 /// @param rgb_only without spectra
 /// @throws Error; among others for a spectral RGL file unless `rgb_only`: it is there already
-void convert_to_rgl(const std::filesystem::path& in, const std::filesystem::path& out,
-                    const CellPolicies& policies, bool rgb_only);
+void convert_to_rgl(const std::filesystem::path& in, const std::filesystem::path& out, const CellPolicies& policies,
+                    bool rgb_only);
 
 }  // namespace gonio

@@ -1,21 +1,24 @@
-#include <gonio/brdf/exr/stack_file.h>
-#include <gonio/brdf/build/compact/fit_compact.h>
-#include <gonio/brdf/build/budget/split_budget.h>
-#include <gonio/mapping/base/atomic_file.h>
-#include <gonio/mapping/base/error.h>
-#include "tools/cli/check_not_input.h"
 #include "tools/convert/convert_scene.h"
-#include "tools/cli/failures.h"
-#include "tools/cli/input.h"
-#include "tools/cli/progress.h"
-#include "tools/convert/scene_manifest.h"
-#include "tools/convert/stack_comments.h"
-#include "tools/cli/written.h"
 
 #include <algorithm>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <string>
+
+#include <nlohmann/json.hpp>
+
+#include <gonio/brdf/build/budget/split_budget.h>
+#include <gonio/brdf/build/compact/fit_compact.h>
+#include <gonio/brdf/exr/stack_file.h>
+#include <gonio/mapping/base/atomic_file.h>
+#include <gonio/mapping/base/error.h>
+
+#include "tools/cli/check_not_input.h"
+#include "tools/cli/failures.h"
+#include "tools/cli/input.h"
+#include "tools/cli/progress.h"
+#include "tools/cli/written.h"
+#include "tools/convert/scene_manifest.h"
+#include "tools/convert/stack_comments.h"
 
 namespace gonio {
 namespace {
@@ -92,13 +95,14 @@ ordered_json material_json(const SceneMaterial& material, const std::vector<Comp
   return json;
 }
 
-void print(const std::vector<SceneMaterial>& scene, const std::vector<Curve>& curves, const Split& split, const Split& even) {
-  std::printf("%-24s %7s %9s %9s %12s %11s %11s\n", "material", "share", "bytes", "relvar", "share*relvar", "even bytes",
-              "even relvar");
+void print(const std::vector<SceneMaterial>& scene, const std::vector<Curve>& curves, const Split& split,
+           const Split& even) {
+  std::printf("%-24s %7s %9s %9s %12s %11s %11s\n", "material", "share", "bytes", "relvar", "share*relvar",
+              "even bytes", "even relvar");
   for (std::size_t k = 0; k < scene.size(); ++k) {
     const BudgetPoint &s = curves[k][split.chosen[k]], &e = curves[k][even.chosen[k]];
-    std::printf("%-24s %7.4f %9zu %9.3g %12.3g %11zu %11.3g\n", scene[k].name.c_str(), scene[k].share, s.bytes, s.variance,
-                scene[k].share * s.variance, e.bytes, e.variance);
+    std::printf("%-24s %7.4f %9zu %9.3g %12.3g %11zu %11.3g\n", scene[k].name.c_str(), scene[k].share, s.bytes,
+                s.variance, scene[k].share * s.variance, e.bytes, e.variance);
   }
   std::printf("%-24s %7s %9zu %9s %12.3g %11zu\n", "sum", "1", split.bytes, "", split.variance, even.bytes);
   std::printf("summed variance: %.3g; evenly split: %.3g", split.variance, even.variance);
@@ -107,7 +111,8 @@ void print(const std::vector<SceneMaterial>& scene, const std::vector<Curve>& cu
 }
 
 /// None of the inputs would be replaced.
-void check_outputs(const std::filesystem::path& path, const std::vector<SceneMaterial>& scene, const std::filesystem::path& out) {
+void check_outputs(const std::filesystem::path& path, const std::vector<SceneMaterial>& scene,
+                   const std::filesystem::path& out) {
   std::vector<std::filesystem::path> inputs{path};
   std::vector<std::string> outputs{"scene-budget.json"};
   for (const SceneMaterial& material : scene) {
@@ -143,8 +148,9 @@ void convert_scene(const std::filesystem::path& path, std::size_t bytes, const s
   for (std::size_t k = 0; k < usable.size(); ++k) {
     const SceneMaterial& material = usable[k];
     const bool built = failures.survives([&] {
-      fits.push_back(fits_of(material, bytes, "building the stacks of " + material.name + " (" + std::to_string(k + 1) + " of " +
-                                                  std::to_string(usable.size()) + ")"));
+      fits.push_back(fits_of(material, bytes,
+                             "building the stacks of " + material.name + " (" + std::to_string(k + 1) + " of " +
+                                 std::to_string(usable.size()) + ")"));
     });
     if (!built) continue;
     scene.push_back(material);
@@ -174,10 +180,13 @@ void convert_scene(const std::filesystem::path& path, std::size_t bytes, const s
     file.bsdf = std::move(fit.data);
     file.name = scene[k].name;
     file.source = scene[k].file.filename().string();
-    file.comments = stack_comments(file.source, "--scene " + path.filename().string() + " --budget " + std::to_string(bytes) + ": " + describe(fit.quality));
+    file.comments = stack_comments(file.source, "--scene " + path.filename().string() + " --budget " +
+                                                    std::to_string(bytes) + ": " + describe(fit.quality));
     save_stack(out / (scene[k].name + ".exr"), file);
   }
-  write_stream_atomically(out / "scene-budget.json", [&](std::ostream& stream) { stream << json.dump(1, ' ', false, ordered_json::error_handler_t::replace) << '\n'; });
+  write_stream_atomically(out / "scene-budget.json", [&](std::ostream& stream) {
+    stream << json.dump(1, ' ', false, ordered_json::error_handler_t::replace) << '\n';
+  });
   print(scene, curves, split, even);
   for (const SceneMaterial& material : scene) print_written(out / (material.name + ".exr"));
   print_written(out / "scene-budget.json");

@@ -1,9 +1,10 @@
 #pragma once
 
-#include <gonio/brdf/formats/cell_policies.h>
-#include "tools/cli/options.h"
-
 #include <filesystem>
+
+#include <gonio/brdf/formats/cell_policies.h>
+
+#include "tools/cli/options.h"
 
 namespace gonio {
 

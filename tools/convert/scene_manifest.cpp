@@ -1,13 +1,14 @@
-#include <gonio/mapping/base/bytes.h>
-#include <gonio/fitting/model/parse_json.h>
-#include <gonio/mapping/base/did_you_mean.h>
-#include <gonio/mapping/base/error.h>
 #include "tools/convert/scene_manifest.h"
 
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
 #include <set>
+
+#include <gonio/fitting/model/parse_json.h>
+#include <gonio/mapping/base/bytes.h>
+#include <gonio/mapping/base/did_you_mean.h>
+#include <gonio/mapping/base/error.h>
 
 namespace gonio {
 namespace {
@@ -82,7 +83,9 @@ std::vector<SceneMaterial> load_scene(const std::filesystem::path& path) {
   const Reader reader(path.string());
   const json root = parse_json(read_bytes(path), path.string());
   if (root.is_object() && root.contains("objects") && !root.contains("format"))
-    throw Error(path.string() + ": found a scene of gonio render (docs/render.md), expected a manifest of gonio convert --scene (docs/scene.md)");
+    throw Error(path.string() +
+                ": found a scene of gonio render (docs/render.md), expected a manifest of gonio convert --scene "
+                "(docs/scene.md)");
   reader.check_members(root, "the file", {"format", "version", "materials"});
   if (reader.text(root, "the file", "format") != "gonio scene")
     reader.fail("format", shown(root["format"]), "\"gonio scene\"");
@@ -109,7 +112,8 @@ std::vector<SceneMaterial> load_scene(const std::filesystem::path& path) {
     sum += material.share;
     scene.push_back(std::move(material));
   }
-  if (!(sum > 0) || std::isinf(sum)) reader.fail("materials: share", "a sum of " + std::to_string(sum), "a finite one above 0");
+  if (!(sum > 0) || std::isinf(sum))
+    reader.fail("materials: share", "a sum of " + std::to_string(sum), "a finite one above 0");
   for (SceneMaterial& material : scene) material.share /= sum;
   return scene;
 }

@@ -1,11 +1,12 @@
-#include <gonio/brdf/formats/sniff.h>
-#include <gonio/mapping/base/error.h>
-#include <gonio/mapping/light/exr/light_exr.h>
-#include <gonio/mapping/light/texture/light_texture.h>
-#include <gonio/mapping/light/photometry.h>
 #include "tools/light/command.h"
 
 #include <map>
+
+#include <gonio/brdf/formats/sniff.h>
+#include <gonio/mapping/base/error.h>
+#include <gonio/mapping/light/exr/light_exr.h>
+#include <gonio/mapping/light/photometry.h>
+#include <gonio/mapping/light/texture/light_texture.h>
 
 namespace gonio {
 namespace {

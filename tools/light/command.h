@@ -1,11 +1,12 @@
 #pragma once
 
-#include <gonio/mapping/light/files/luminaire.h>
-#include <gonio/mapping/light/texture/solid.h>
-
-#include <CLI/App.hpp>
 #include <string>
 #include <vector>
+
+#include <CLI/App.hpp>
+
+#include <gonio/mapping/light/files/luminaire.h>
+#include <gonio/mapping/light/texture/solid.h>
 
 namespace gonio {
 

@@ -1,12 +1,13 @@
-#include <gonio/mapping/base/error.h>
-#include <gonio/mapping/base/format_number.h>
-#include <gonio/mapping/light/photometry.h>
-#include <gonio/mapping/light/files/text_scanner.h>
-#include "tools/cli/failures.h"
-#include "tools/light/command.h"
-
 #include <cmath>
 #include <cstdio>
+
+#include <gonio/mapping/base/error.h>
+#include <gonio/mapping/base/format_number.h>
+#include <gonio/mapping/light/files/text_scanner.h>
+#include <gonio/mapping/light/photometry.h>
+
+#include "tools/cli/failures.h"
+#include "tools/light/command.h"
 
 namespace gonio {
 namespace {
@@ -34,36 +35,27 @@ void print_light(const std::string& file, const LightCommand& o) {
   line("luminaire", shown(light.name));
   line("lamp", shown(light.lamp));
   line("unit", light.unit);
-  line("angles", text("%zu C planes, %zu gamma, symmetry: ", light.diagram.c.size() - 1,
-                      light.diagram.gamma.size()) +
+  line("angles", text("%zu C planes, %zu gamma, symmetry: ", light.diagram.c.size() - 1, light.diagram.gamma.size()) +
                      to_string(light.symmetry));
-  line("flux",
-       format_quantity(p.flux) + " " + total +
-           text(", %.1f %% of it down", p.flux > 0 ? 100 * p.downward_flux / p.flux : 0.0));
+  line("flux", format_quantity(p.flux) + " " + total +
+                   text(", %.1f %% of it down", p.flux > 0 ? 100 * p.downward_flux / p.flux : 0.0));
   if (light.stated_lumens)
     line("stated flux", format_quantity(*light.stated_lumens) + " " + total +
                             text(" (%+.2f %%)", 100 * (p.flux / *light.stated_lumens - 1)));
   if (light.lamp_lumens)
-    line("lamps", format_quantity(*light.lamp_lumens) + " " + total +
-                      (light.absolute ? ", absolute photometry" : ""));
-  if (const auto ratio = light_output_ratio(light))
-    line("output ratio", text("%.2f %%", 100 * *ratio));
+    line("lamps", format_quantity(*light.lamp_lumens) + " " + total + (light.absolute ? ", absolute photometry" : ""));
+  if (const auto ratio = light_output_ratio(light)) line("output ratio", text("%.2f %%", 100 * *ratio));
   if (const auto e = efficacy(light))  // of radiometric files the efficiency
     line("efficacy", format_quantity(*e) + " " + total + text("/W at %.4g W", light.watts));
-  line("I max",
-       format_quantity(p.max_cd) + " " + light.unit +
-           text(" at C %.4g, gamma %.4g degrees", p.max_at.c / degree, p.max_at.gamma / degree));
-  line("beam angle", text("%.1f degrees in C0-C180, %.1f in C90-C270", p.c0.beam / degree,
-                          p.c90.beam / degree));
-  line("field angle", text("%.1f degrees in C0-C180, %.1f in C90-C270", p.c0.field / degree,
-                           p.c90.field / degree));
+  line("I max", format_quantity(p.max_cd) + " " + light.unit +
+                    text(" at C %.4g, gamma %.4g degrees", p.max_at.c / degree, p.max_at.gamma / degree));
+  line("beam angle", text("%.1f degrees in C0-C180, %.1f in C90-C270", p.c0.beam / degree, p.c90.beam / degree));
+  line("field angle", text("%.1f degrees in C0-C180, %.1f in C90-C270", p.c0.field / degree, p.c90.field / degree));
   std::string zones;
   for (double z : p.zones)  // less is rounding
     zones += text("%.4g ", z > 1e-9 * p.flux ? z : 0.0);
-  line(total == "lm" ? "zonal lumens" : "zonal flux",
-       zones + total + ", every 10 degrees from the nadir");
-  if (!deviations.empty())
-    line("deviations", text("%zu, see gonio light validate", deviations.size()));
+  line(total == "lm" ? "zonal lumens" : "zonal flux", zones + total + ", every 10 degrees from the nadir");
+  if (!deviations.empty()) line("deviations", text("%zu, see gonio light validate", deviations.size()));
   if (!light.other_zero.empty())
     line("hint", light.other_zero + ": if C0 is the file's 0-degree plane, use --ies-zero 0");
 }
@@ -84,11 +76,10 @@ void light_validate(const LightCommand& o) {
       const Luminaire light = load_as_is(file, o, deviations);
       const double total = flux(light.diagram);
       if (light.stated_lumens && std::abs(total / *light.stated_lumens - 1) > 0.05)
-        deviations.push_back({"flux",
-                              format_number(total) + " " + flux_unit(light) + " by quadrature",
+        deviations.push_back({"flux", format_number(total) + " " + flux_unit(light) + " by quadrature",
                               format_number(*light.stated_lumens) + " as the file states", false});
-      std::printf("%s: %s, %zu deviation%s\n", file.c_str(), light.format.c_str(),
-                  deviations.size(), deviations.size() == 1 ? "" : "s");
+      std::printf("%s: %s, %zu deviation%s\n", file.c_str(), light.format.c_str(), deviations.size(),
+                  deviations.size() == 1 ? "" : "s");
       deviating += !deviations.empty();
     } catch (const Error& error) {
       std::printf("%s: rejected\n  %s\n", file.c_str(), error.what());
@@ -97,10 +88,8 @@ void light_validate(const LightCommand& o) {
     for (const Problem& d : deviations) std::printf("  %s\n", to_string(d).c_str());
   }
   if (broken > 0)
-    throw Error("found " + std::to_string(broken) + " of " + std::to_string(o.files.size()) +
-                " files unusable" +
-                (deviating > 0 ? ", " + std::to_string(deviating) + " with deviations" : "") +
-                ", expected none");
+    throw Error("found " + std::to_string(broken) + " of " + std::to_string(o.files.size()) + " files unusable" +
+                (deviating > 0 ? ", " + std::to_string(deviating) + " with deviations" : "") + ", expected none");
 }
 
 }  // namespace gonio

@@ -1,19 +1,20 @@
+#include <cstdio>
+#include <random>
+
 #include <gonio/mapping/base/error.h>
 #include <gonio/mapping/base/format_number.h>
 #include <gonio/mapping/light/emission.h>
-#include <gonio/mapping/light/photometry.h>
 #include <gonio/mapping/light/files/text_scanner.h>
-#include "tools/light/command.h"
+#include <gonio/mapping/light/photometry.h>
 
-#include <cstdio>
-#include <random>
+#include "tools/light/command.h"
 
 namespace gonio {
 namespace {
 
 void print_difference(const char* name, const LightDifference& d) {
-  std::printf("%-14s rms %.5f  largest %.5f  Hausdorff %.5f  flux %+.3f %%\n", name, d.rms,
-              d.largest, d.hausdorff, 100 * d.flux);
+  std::printf("%-14s rms %.5f  largest %.5f  Hausdorff %.5f  flux %+.3f %%\n", name, d.rms, d.largest, d.hausdorff,
+              100 * d.flux);
 }
 
 }  // namespace
@@ -21,11 +22,10 @@ void print_difference(const char* name, const LightDifference& d) {
 void light_sample(const CLI::App& verb, const LightCommand& o) {
   const Luminaire light = load(o.in, o);
   if (verb.count("--quality") > 0) {
-    std::printf("%-52s %12s %10s %8s\n", "method", ("flux, " + flux_unit(light)).c_str(), "relvar",
-                "ns");
+    std::printf("%-52s %12s %10s %8s\n", "method", ("flux, " + flux_unit(light)).c_str(), "relvar", "ns");
     for (const EmissionQuality& q : emission_quality(light.diagram))
-      std::printf("%-52s %12s %10.2e %8.0f\n", q.method.c_str(), format_number(q.flux).c_str(),
-                  q.relvar, q.nanoseconds_per_draw);
+      std::printf("%-52s %12s %10.2e %8.0f\n", q.method.c_str(), format_number(q.flux).c_str(), q.relvar,
+                  q.nanoseconds_per_draw);
     std::printf("%-52s %12s\n", "quadrature", format_number(flux(light.diagram)).c_str());
     return;
   }
@@ -36,8 +36,8 @@ void light_sample(const CLI::App& verb, const LightCommand& o) {
   for (int k = 0; k < o.draws; ++k) {
     const float u = uniform(random), v = uniform(random);
     const auto s = sampler.sample(u, v);
-    std::printf("%.8g,%.8g,%.8g,%.8g,%.8g\n", double(s.direction.x), double(s.direction.y),
-                double(s.direction.z), double(s.pdf), double(s.weight));
+    std::printf("%.8g,%.8g,%.8g,%.8g,%.8g\n", double(s.direction.x), double(s.direction.y), double(s.direction.z),
+                double(s.pdf), double(s.weight));
   }
 }
 
@@ -45,12 +45,11 @@ void light_compare(const LightCommand& o) {
   std::printf("All but the flux as fractions of the largest intensity of the first.\n");
   if (o.files.size() == 2) {
     const Luminaire a = load(o.files[0], o), b = load(o.files[1], o);
-    print_difference("second file", compare(bilinear_reconstruction(a.diagram),
-                                            bilinear_reconstruction(b.diagram), o.rows));
+    print_difference("second file",
+                     compare(bilinear_reconstruction(a.diagram), bilinear_reconstruction(b.diagram), o.rows));
     return;
   }
-  if (o.files.size() != 1)
-    throw Error("found " + std::to_string(o.files.size()) + " files, expected 1 or 2");
+  if (o.files.size() != 1) throw Error("found " + std::to_string(o.files.size()) + " files, expected 1 or 2");
   const LightDiagram diagram = load(o.files[0], o).diagram;
   const Reconstruction reference = bilinear_reconstruction(diagram);
   std::printf("Against the bilinear diagram:\n");
@@ -66,8 +65,8 @@ void light_compare(const LightCommand& o) {
     const Reconstruction rebuilt = reconstruction(half, name);
     const Prediction p = predict_left_out(diagram, rebuilt);
     const LightDifference d = compare(reference, rebuilt, o.rows);
-    std::printf("%-14s rms %.5f  largest %.5f at %zu angles;  Hausdorff %.5f  flux %+.3f %%\n",
-                name, p.rms, p.largest, p.angles, d.hausdorff, 100 * d.flux);
+    std::printf("%-14s rms %.5f  largest %.5f at %zu angles;  Hausdorff %.5f  flux %+.3f %%\n", name, p.rms, p.largest,
+                p.angles, d.hausdorff, 100 * d.flux);
   }
 }
 

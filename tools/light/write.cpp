@@ -1,13 +1,14 @@
+#include <filesystem>
+
 #include <gonio/mapping/base/atomic_file.h>
 #include <gonio/mapping/base/error.h>
 #include <gonio/mapping/light/exr/light_exr.h>
 #include <gonio/mapping/light/polar_svg.h>
+
 #include "tools/cli/check_not_input.h"
-#include "tools/light/command.h"
 #include "tools/cli/options.h"
 #include "tools/cli/written.h"
-
-#include <filesystem>
+#include "tools/light/command.h"
 
 namespace gonio {
 
@@ -17,12 +18,10 @@ void light_convert(const CLI::App& verb, const LightCommand& o) {
   if (!image)
     for (const char* option : {"--filter", "--resolution"})
       if (verb.count(option) > 0)
-        throw Error(std::string(option) +
-                    ": found one, expected none: only images are reconstructed");
+        throw Error(std::string(option) + ": found one, expected none: only images are reconstructed");
   if (extension != ".exr" && verb.count("--layout") > 0)
     throw Error("--layout: found one, expected none: only .exr has layouts");
-  const std::filesystem::path picture = std::filesystem::path(o.out) +=
-      extension == ".pbrt" ? ".exr" : "";
+  const std::filesystem::path picture = std::filesystem::path(o.out) += extension == ".pbrt" ? ".exr" : "";
   check_not_input(o.out, {o.in});
   check_not_input(picture, {o.in});
   const Luminaire light = load(o.in, o);
@@ -45,9 +44,8 @@ void light_convert(const CLI::App& verb, const LightCommand& o) {
   else
     save_latlong(picture, reconstruction(light.diagram, o.filter), o.resolution);
   if (extension == ".pbrt")
-    write_stream_atomically(o.out, [&](std::ostream& stream) {
-      stream << pbrt_goniometric_light(picture.filename().string());
-    });
+    write_stream_atomically(
+        o.out, [&](std::ostream& stream) { stream << pbrt_goniometric_light(picture.filename().string()); });
   print_written(o.out);
   if (extension == ".pbrt") print_written(picture);
 }
@@ -70,8 +68,7 @@ void light_solid(const LightCommand& o) {
   const Luminaire light = load(o.in, o);
   const double largest = max_intensity(light.diagram);
   if (!(largest > 0)) throw Error(o.in + ": found a luminaire that is dark, expected some light");
-  const Mesh mesh =
-      photometric_solid(reconstruction(light.diagram, o.filter), o.rows, 2 * o.rows, 1 / largest);
+  const Mesh mesh = photometric_solid(reconstruction(light.diagram, o.filter), o.rows, 2 * o.rows, 1 / largest);
   write_stream_atomically(o.out, [&](std::ostream& stream) {
     extension == ".obj" ? write_obj(stream, mesh, light.name) : write_ply(stream, mesh);
   });

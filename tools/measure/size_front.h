@@ -1,24 +1,26 @@
 #pragma once
 
-#include <gonio/brdf/build/compact/fit_compact.h>
-#include <gonio/brdf/table/table.h>
-#include "tools/measure/table_fits.h"
-
 #include <cstddef>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <gonio/brdf/build/compact/fit_compact.h>
+#include <gonio/brdf/table/table.h>
+
+#include "tools/measure/table_fits.h"
 
 namespace gonio {
 
 /// One of the forms that a material could have, measured.
 struct FrontPoint {
-  std::string id;         ///< compact/CHART or lobesN
-  std::size_t bytes;      ///< all memory that it holds, a table apart
-  double ns;              ///< nanoseconds a sample, one thread
-  double relvar;          ///< worst relative variance of sampling the table, up to 80 degrees
-  double eval_error;      ///< relative L1 to the table, see CompactQuality
+  std::string id;     ///< compact/CHART or lobesN
+  std::size_t bytes;  ///< all memory that it holds, a table apart
+  double ns;          ///< nanoseconds a sample, one thread
+  double relvar;      ///< worst relative variance of sampling the table, up to 80 degrees
+  double eval_error;  ///< relative L1 to the table, see CompactQuality
   bool chosen = false;
 };
 

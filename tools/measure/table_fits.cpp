@@ -13,9 +13,7 @@ TableFits fit_table(const BrdfTable& table, const LobeModel& form, const FitOpti
   fits.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   for (Fit& fit : stages) {
     fit.model.name = table.info().name;
-    const BrdfFunction model = [&](const glm::vec3& wi, const glm::vec3& wo) {
-      return fit.model.eval(wi, wo);
-    };
+    const BrdfFunction model = [&](const glm::vec3& wi, const glm::vec3& wo) { return fit.model.eval(wi, wo); };
     const FitErrorReport errors = fit_errors(f, model, options.grazing_cutoff);
     fits.stages.push_back({fit, errors});
   }

@@ -1,11 +1,11 @@
 #pragma once
 
+#include <cstddef>
+#include <vector>
+
 #include <gonio/brdf/table/table.h>
 #include <gonio/fitting/fit/errors.h>
 #include <gonio/fitting/fit/fit.h>
-
-#include <cstddef>
-#include <vector>
 
 namespace gonio {
 
@@ -19,7 +19,7 @@ struct StageFit {
 
 struct TableFits {
   std::vector<StageFit> stages;  ///< with one specular lobe, two, and so on
-  double seconds = 0;  ///< of all fits together, which build on each other; not the errors
+  double seconds = 0;            ///< of all fits together, which build on each other; not the errors
 };
 
 /// Fits what of the table was measured, and says how far the fits are from that.

@@ -1,7 +1,5 @@
 #include "tools/ndf/picture.h"
 
-#include <png.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,10 +8,13 @@
 #include <limits>
 #include <ostream>
 
+#include <png.h>
+
 #include <gonio/mapping/base/atomic_file.h>
 #include <gonio/mapping/base/error.h>
-#include "tools/page/base64.h"
+
 #include "tools/cli/number.h"
+#include "tools/page/base64.h"
 
 namespace gonio {
 namespace {
@@ -29,7 +30,8 @@ Rgb colour(double t) {
   const double at = std::clamp(t, 0.0, 1.0) * (stops.size() - 1);
   const auto k = std::min(static_cast<std::size_t>(at), stops.size() - 2);
   Rgb result;
-  for (std::size_t c = 0; c < 3; ++c) result[c] = stops[k][c] + (at - static_cast<double>(k)) * (stops[k + 1][c] - stops[k][c]);
+  for (std::size_t c = 0; c < 3; ++c)
+    result[c] = stops[k][c] + (at - static_cast<double>(k)) * (stops[k + 1][c] - stops[k][c]);
   return result;
 }
 
@@ -88,40 +90,49 @@ Contrast g1_contrast(const DiskImage& g1) {
   return {low < high * (1 - 1e-6) ? low : high - 1e-3, high, false};
 }
 
-void write_disk_picture(const std::filesystem::path& path, const DiskImage& image, const Contrast& contrast, const std::string& title,
-                        const std::string& unit) {
+void write_disk_picture(const std::filesystem::path& path, const DiskImage& image, const Contrast& contrast,
+                        const std::string& title, const std::string& unit) {
   constexpr double side = 512, left = 30, top = 70, bar = left + side + 40;
   write_stream_atomically(path, [&](std::ostream& out) {
-    out << "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" viewBox=\"0 0 740 610\" "
+    out << "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" viewBox=\"0 0 740 "
+           "610\" "
            "font-family=\"sans-serif\" font-size=\"13\">\n<rect width=\"740\" height=\"610\" fill=\"white\"/>\n"
            "<text x=\"30\" y=\"28\" font-size=\"17\">";
     for (const char c : title) c == '&' ? out << "&amp;" : c == '<' ? out << "&lt;" : out << c;
     out << "</text>\n<text x=\"30\" y=\"50\" fill=\"#555\">from above, x to the right, y up; contrast stretched "
-        << (contrast.logarithmic ? "logarithmically" : "linearly") << " from " << number(contrast.low) << " to " << number(contrast.high)
-        << unit << "</text>\n<image x=\"" << left << "\" y=\"" << top << "\" width=\"" << side << "\" height=\"" << side
-        << "\" xlink:href=\"data:image/png;base64," << base64(png(image, contrast)) << "\"/>\n";
+        << (contrast.logarithmic ? "logarithmically" : "linearly") << " from " << number(contrast.low) << " to "
+        << number(contrast.high) << unit << "</text>\n<image x=\"" << left << "\" y=\"" << top << "\" width=\"" << side
+        << "\" height=\"" << side << "\" xlink:href=\"data:image/png;base64," << base64(png(image, contrast))
+        << "\"/>\n";
     const double cx = left + side / 2, cy = top + side / 2;
     for (const int t : {30, 60, 80}) {
       const double r = side / 2 * std::sin(t * degree);
-      out << "<circle cx=\"" << cx << "\" cy=\"" << cy << "\" r=\"" << r << "\" fill=\"none\" stroke=\"white\" stroke-opacity=\"0.6\" "
+      out << "<circle cx=\"" << cx << "\" cy=\"" << cy << "\" r=\"" << r
+          << "\" fill=\"none\" stroke=\"white\" stroke-opacity=\"0.6\" "
           << "stroke-width=\"0.8\" stroke-dasharray=\"3 4\"/>\n<text x=\"" << cx << "\" y=\"" << cy - r + 13
-          << "\" text-anchor=\"middle\" font-size=\"11\" fill=\"white\" stroke=\"#222\" stroke-width=\"2.5\" paint-order=\"stroke\">" << t
-          << "&#176;</text>\n";
+          << "\" text-anchor=\"middle\" font-size=\"11\" fill=\"white\" stroke=\"#222\" stroke-width=\"2.5\" "
+             "paint-order=\"stroke\">"
+          << t << "&#176;</text>\n";
     }
     out << "<circle cx=\"" << cx << "\" cy=\"" << cy << "\" r=\"" << side / 2 << "\" fill=\"none\" stroke=\"#222\"/>\n";
     constexpr int steps = 64;
     for (int k = 0; k < steps; ++k) {
       const Rgb c = colour((k + 0.5) / steps);
-      out << "<rect x=\"" << bar << "\" y=\"" << top + side * (steps - 1 - k) / steps << "\" width=\"24\" height=\"" << side / steps + 0.5
-          << "\" fill=\"rgb(" << static_cast<int>(c[0]) << ',' << static_cast<int>(c[1]) << ',' << static_cast<int>(c[2]) << ")\"/>\n";
+      out << "<rect x=\"" << bar << "\" y=\"" << top + side * (steps - 1 - k) / steps << "\" width=\"24\" height=\""
+          << side / steps + 0.5 << "\" fill=\"rgb(" << static_cast<int>(c[0]) << ',' << static_cast<int>(c[1]) << ','
+          << static_cast<int>(c[2]) << ")\"/>\n";
     }
     constexpr int labels = 5;
     for (int k = 0; k < labels; ++k) {
       const double t = k / (labels - 1.0);
       const double value = contrast.logarithmic ? contrast.low * std::pow(contrast.high / contrast.low, t)
                                                 : contrast.low + t * (contrast.high - contrast.low);
-      out << "<text x=\"" << bar + 32 << "\" y=\"" << top + side * (1 - t) + (k == labels - 1 ? 10 : k == 0 ? 0 : 5) << "\">"
-          << (k == 0 ? "&#8804; " : "") << number(value) << unit << "</text>\n";
+      out << "<text x=\"" << bar + 32 << "\" y=\""
+          << top + side * (1 - t) +
+                 (k == labels - 1 ? 10
+                  : k == 0        ? 0
+                                  : 5)
+          << "\">" << (k == 0 ? "&#8804; " : "") << number(value) << unit << "</text>\n";
     }
     out << "</svg>\n";
   });

@@ -23,7 +23,7 @@ Contrast g1_contrast(const DiskImage& g1);
 
 /// An SVG page: the image as an embedded PNG with rings at 30, 60 and 80 degrees, and a bar that
 /// labels the stretched range. @throws Error if it cannot be written
-void write_disk_picture(const std::filesystem::path& path, const DiskImage& image, const Contrast& contrast, const std::string& title,
-                        const std::string& unit);
+void write_disk_picture(const std::filesystem::path& path, const DiskImage& image, const Contrast& contrast,
+                        const std::string& title, const std::string& unit);
 
 }  // namespace gonio

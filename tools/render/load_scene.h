@@ -1,11 +1,13 @@
 #pragma once
 
-#include <CLI/App.hpp>
 #include <string>
 
+#include <CLI/App.hpp>
+
 #include <gonio/brdf/formats/cell_policies.h>
-#include "tools/render/trace/film.h"
+
 #include "tools/render/scene/scene.h"
+#include "tools/render/trace/film.h"
 
 namespace gonio {
 

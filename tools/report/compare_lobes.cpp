@@ -1,10 +1,11 @@
-#include <gonio/fitting/model/model.h>
 #include "tools/report/compare_lobes.h"
 
 #include <algorithm>
 #include <iomanip>
 #include <ostream>
 #include <sstream>
+
+#include <gonio/fitting/model/model.h>
 
 namespace gonio {
 namespace {
@@ -106,9 +107,9 @@ void write_lobes(std::ostream& out, const MaterialReport& material) {
     }
     out << " Its relvar, the mean from 2° to 70°, is " << number(mean_relvar(lobes)) << "; that of `displacement` is "
         << number(mean_relvar(stack)) << ". At equal time it has " << times(c->equal_time) << " the variance ("
-        << number(lobes.ns.sample) << " against " << number(stack.ns.sample) << " ns a sample), at equal bytes in memory "
-        << times(c->equal_bytes) << " that of `displacement_small` (" << lobes.bytes << " against " << small.bytes
-        << " bytes, relvar " << number(mean_relvar(small)) << ").";
+        << number(lobes.ns.sample) << " against " << number(stack.ns.sample)
+        << " ns a sample), at equal bytes in memory " << times(c->equal_bytes) << " that of `displacement_small` ("
+        << lobes.bytes << " against " << small.bytes << " bytes, relvar " << number(mean_relvar(small)) << ").";
     if (c->enough) {
       out << (c->equal_time <= lobes_enough_factor
                   ? " Enough means here: at equal time at most " + times(lobes_enough_factor) + " the variance.\n"
@@ -120,10 +121,10 @@ void write_lobes(std::ostream& out, const MaterialReport& material) {
   }
   if (material.fits.empty()) return;
   const nlohmann::json& errors = material.fits.back()["errors"]["inside_cutoff"];
-  out << "\nIn place of the table, the fit with most lobes is off by "
-      << error_text(errors["relative_l1"], 2, 100) << " % of the light and a mean ΔE of "
-      << error_text(errors["delta_e_2000"], 2)
-      << " inside the cut-off. More lobes never raise the cost of a fit; its errors, which weigh differently, may rise a "
+  out << "\nIn place of the table, the fit with most lobes is off by " << error_text(errors["relative_l1"], 2, 100)
+      << " % of the light and a mean ΔE of " << error_text(errors["delta_e_2000"], 2)
+      << " inside the cut-off. More lobes never raise the cost of a fit; its errors, which weigh differently, may rise "
+         "a "
          "little.\n";
   out << "\n| fitted model | RMS | log RMS | L1 | albedo | ΔE | RMS beyond | log RMS beyond | L1 "
          "beyond | albedo beyond | ΔE beyond |\n|---|---|---|---|---|---|---|---|---|---|---|\n";

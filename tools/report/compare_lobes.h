@@ -1,8 +1,8 @@
 #pragma once
 
-#include "tools/report/measure/report_data.h"
-
 #include <iosfwd>
+
+#include "tools/report/measure/report_data.h"
 
 namespace gonio {
 
@@ -14,7 +14,7 @@ struct LobeComparison {
   double samples = 0;      ///< its variance over that of `displacement`
   double equal_time = 0;   ///< its time x variance over that of `displacement`
   double equal_bytes = 0;  ///< its variance over that of `displacement_small`
-  bool enough = false;  ///< equal_time <= lobes_enough_factor, or variance <= lobes_enough_relvar
+  bool enough = false;     ///< equal_time <= lobes_enough_factor, or variance <= lobes_enough_relvar
 };
 
 /// Fitted lobes are called enough if, at equal time, they have at most this many times the variance

@@ -1,11 +1,11 @@
 #include "tools/report/grid_figure.h"
 
-#include <gonio/mapping/base/atomic_file.h>
-
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <ostream>
+
+#include <gonio/mapping/base/atomic_file.h>
 
 namespace gonio {
 namespace {
@@ -26,7 +26,8 @@ void shade(std::ostream& out, const Panel& panel) {
   double density[sectors][rings], peak = 0;
   for (int i = 0; i < sectors; ++i)
     for (int j = 0; j < rings; ++j) {
-      const Polar<float> at{(static_cast<float>(j) + 0.5f) / rings, 2 * pi<float> * (static_cast<float>(i) + 0.5f) / sectors};
+      const Polar<float> at{(static_cast<float>(j) + 0.5f) / rings,
+                            2 * pi<float> * (static_cast<float>(i) + 0.5f) / sectors};
       density[i][j] = panel.stack.pdf(panel.theta_i, polar_to_direction(at));
       peak = std::max(peak, density[i][j]);
     }
@@ -38,9 +39,10 @@ void shade(std::ostream& out, const Panel& panel) {
       const double r0 = radius * j / rings, r1 = radius * (j + 1) / rings;
       const auto blend = [&](int from, int to) { return static_cast<int>(from + t * (to - from)); };
       out << "<path fill=\"rgb(" << blend(255, 33) << ',' << blend(255, 102) << ',' << blend(255, 172) << ")\" d=\"M"
-          << panel.cx + r0 * std::cos(a) << ' ' << panel.cy - r0 * std::sin(a) << 'L' << panel.cx + r1 * std::cos(a) << ' '
-          << panel.cy - r1 * std::sin(a) << 'L' << panel.cx + r1 * std::cos(b) << ' ' << panel.cy - r1 * std::sin(b) << 'L'
-          << panel.cx + r0 * std::cos(b) << ' ' << panel.cy - r0 * std::sin(b) << "Z\"/>\n";
+          << panel.cx + r0 * std::cos(a) << ' ' << panel.cy - r0 * std::sin(a) << 'L' << panel.cx + r1 * std::cos(a)
+          << ' ' << panel.cy - r1 * std::sin(a) << 'L' << panel.cx + r1 * std::cos(b) << ' '
+          << panel.cy - r1 * std::sin(b) << 'L' << panel.cx + r0 * std::cos(b) << ' ' << panel.cy - r0 * std::sin(b)
+          << "Z\"/>\n";
     }
 }
 
@@ -51,7 +53,8 @@ void draw_grid(std::ostream& out, const Panel& panel) {
       out << "<polyline points=\"";
       for (int step = 0; step <= steps; ++step) {
         const float a = static_cast<float>(line) / lines, b = static_cast<float>(step) / steps;
-        const auto s = direction == 0 ? panel.stack.sample(panel.theta_i, a, b) : panel.stack.sample(panel.theta_i, b, a);
+        const auto s =
+            direction == 0 ? panel.stack.sample(panel.theta_i, a, b) : panel.stack.sample(panel.theta_i, b, a);
         const Polar<float> p = direction_to_polar(s.wo);
         out << panel.cx + radius * p.r * std::cos(p.phi) << ',' << panel.cy - radius * p.r * std::sin(p.phi) << ' ';
       }
@@ -66,12 +69,13 @@ void write_grid_figure(const std::filesystem::path& path, const std::string& tit
   constexpr double count = std::size(angles);
   const double width = count * (2 * radius + gap) + gap, height = top + 2 * radius + 50;
   write_stream_atomically(path, [&](std::ostream& out) {
-    out << std::fixed << std::setprecision(1) << "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " << width << ' ' << height
-        << "\" font-family=\"sans-serif\" font-size=\"14\">\n<rect width=\"" << width << "\" height=\"" << height
-        << "\" fill=\"white\"/>\n<text x=\"" << gap << "\" y=\"26\" font-size=\"17\">";
+    out << std::fixed << std::setprecision(1) << "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " << width
+        << ' ' << height << "\" font-family=\"sans-serif\" font-size=\"14\">\n<rect width=\"" << width << "\" height=\""
+        << height << "\" fill=\"white\"/>\n<text x=\"" << gap << "\" y=\"26\" font-size=\"17\">";
     for (const char c : title) c == '&' ? out << "&amp;" : c == '<' ? out << "&lt;" : out << c;
     out << "</text>\n<text x=\"" << gap
-        << "\" y=\"46\" fill=\"#555\">a 16 x 16 grid of the unit square, carried to the hemisphere (seen from above; light comes from the right, "
+        << "\" y=\"46\" fill=\"#555\">a 16 x 16 grid of the unit square, carried to the hemisphere (seen from above; "
+           "light comes from the right, "
            "the mirror direction is left)</text>\n";
     double cx = gap + radius;
     for (const double angle : angles) {
@@ -81,9 +85,10 @@ void write_grid_figure(const std::filesystem::path& path, const std::string& tit
       out << "</g>\n";
       out << "<g fill=\"none\" stroke=\"#b2182b\" stroke-width=\"0.6\">\n";
       draw_grid(out, panel);
-      out << "</g>\n<circle cx=\"" << cx << "\" cy=\"" << panel.cy << "\" r=\"" << radius << "\" fill=\"none\" stroke=\"#222\"/>\n<text x=\""
-          << cx << "\" y=\"" << top + 2 * radius + 26 << "\" text-anchor=\"middle\">incident angle " << std::setprecision(0) << angle
-          << std::setprecision(1) << "°</text>\n";
+      out << "</g>\n<circle cx=\"" << cx << "\" cy=\"" << panel.cy << "\" r=\"" << radius
+          << "\" fill=\"none\" stroke=\"#222\"/>\n<text x=\"" << cx << "\" y=\"" << top + 2 * radius + 26
+          << "\" text-anchor=\"middle\">incident angle " << std::setprecision(0) << angle << std::setprecision(1)
+          << "°</text>\n";
       cx += 2 * radius + gap;
     }
     out << "</svg>\n";

@@ -6,10 +6,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include <gonio/mapping/base/bytes.h>
 #include <gonio/fitting/model/parse_json.h>
 #include <gonio/mapping/base/atomic_file.h>
+#include <gonio/mapping/base/bytes.h>
 #include <gonio/mapping/base/error.h>
+
 #include "tools/page/write_page.h"
 
 namespace gonio {
@@ -34,7 +35,8 @@ Json load_report(const std::filesystem::path& path) {
     for (std::size_t k = 0; k < report[key].size(); ++k) {
       const Json& entry = report[key][k];
       if (!entry.is_object())
-        throw Error(path.string() + ": " + key + "[" + std::to_string(k) + "]: found " + entry.type_name() + ", expected an object");
+        throw Error(path.string() + ": " + key + "[" + std::to_string(k) + "]: found " + entry.type_name() +
+                    ", expected an object");
     }
   }
   const Json& version = member(report, "gonio_version");
@@ -76,20 +78,26 @@ const Json* best(const Json& material) {
 
 void write_overview(std::ostream& out, const Json& report, const std::vector<std::string>& pages) {
   const std::size_t materials = report["materials"].size(), lights = report["lights"].size();
-  out << "# Sampling quality\n\n" << materials << " materials, " << lights << " luminaires. Efficiency is 1 / (ns of a sample × (mean relvar from 2° to 70° + 0.001)).\n\n"
-      << "| material | format | most efficient | chart | sample ns | mean relvar | efficiency |\n|---|---|---|---|---|---|---|\n";
+  out << "# Sampling quality\n\n"
+      << materials << " materials, " << lights
+      << " luminaires. Efficiency is 1 / (ns of a sample × (mean relvar from 2° to 70° + 0.001)).\n\n"
+      << "| material | format | most efficient | chart | sample ns | mean relvar | efficiency "
+         "|\n|---|---|---|---|---|---|---|\n";
   for (std::size_t k = 0; k < materials; ++k) {
     const Json& material = report["materials"][k];
-    out << "| [" << string_of(member(material, "name")) << "](" << pages[k] << ") | " << string_of(member(material, "format")) << " | ";
+    out << "| [" << string_of(member(material, "name")) << "](" << pages[k] << ") | "
+        << string_of(member(material, "format")) << " | ";
     if (const Json* method = best(material)) {
       out << string_of(member(*method, "id")) << " | " << string_of(member(*method, "chart")) << " | "
-          << number(member(member(*method, "ns"), "sample"), "%.3g") << " | " << number(member(*method, "mean_relvar"), "%.2g") << " | "
-          << number(member(*method, "efficiency"), "%.3g") << " |\n";
+          << number(member(member(*method, "ns"), "sample"), "%.3g") << " | "
+          << number(member(*method, "mean_relvar"), "%.2g") << " | " << number(member(*method, "efficiency"), "%.3g")
+          << " |\n";
     } else {
       out << "| | | | |\n";
     }
   }
-  for (const Json& light : report["lights"]) out << "\n- " << string_of(member(light, "name")) << ", " << string_of(member(light, "format")) << '\n';
+  for (const Json& light : report["lights"])
+    out << "\n- " << string_of(member(light, "name")) << ", " << string_of(member(light, "format")) << '\n';
 }
 
 void add_report(Json& merged, Json report) {
@@ -99,27 +107,32 @@ void add_report(Json& merged, Json report) {
   }
   for (const char* key : {"materials", "lights"})
     for (Json& entry : report[key]) merged[key].push_back(std::move(entry));
-  if (member(report, "machine").is_object() && member(merged, "machine").is_object()) add_machine(merged["machine"], report["machine"]);
-  if (report.contains("command")) merged["command"] = string_of(member(merged, "command")) + "; " + string_of(report["command"]);
+  if (member(report, "machine").is_object() && member(merged, "machine").is_object())
+    add_machine(merged["machine"], report["machine"]);
+  if (report.contains("command"))
+    merged["command"] = string_of(member(merged, "command")) + "; " + string_of(report["command"]);
   if (report.contains("stability") && !merged.contains("stability")) merged["stability"] = report["stability"];
 }
 
 }  // namespace
 
-void write_merged_report(const std::filesystem::path& directory, const std::vector<std::filesystem::path>& paths, Failures& failures) {
+void write_merged_report(const std::filesystem::path& directory, const std::vector<std::filesystem::path>& paths,
+                         Failures& failures) {
   Json report;
   std::vector<std::string> pages;  // of each material
   for (const auto& path : paths)
     failures.survives([&] {
       add_report(report, load_report(path));
       const std::filesystem::path page = std::filesystem::absolute(path).parent_path() / "report.html";
-      const std::string relative = page.lexically_relative(std::filesystem::absolute(directory).lexically_normal()).generic_string();
+      const std::string relative =
+          page.lexically_relative(std::filesystem::absolute(directory).lexically_normal()).generic_string();
       pages.resize(report["materials"].size(), relative);
     });
   if (report.is_null()) failures.throw_any(paths.size());
   std::error_code failed;
   std::filesystem::create_directories(directory, failed);
-  if (failed) throw Error(directory.string() + ": cannot be made: " + failed.message() + ", expected a folder to write to");
+  if (failed)
+    throw Error(directory.string() + ": cannot be made: " + failed.message() + ", expected a folder to write to");
   write_stream_atomically(directory / "report.json", [&](std::ostream& out) { out << report.dump(1) << '\n'; });
   write_stream_atomically(directory / "report.html", [&](std::ostream& out) { write_page(out, report); });
   write_stream_atomically(directory / "report.md", [&](std::ostream& out) { write_overview(out, report, pages); });

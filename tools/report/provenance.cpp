@@ -1,12 +1,13 @@
 #include "tools/report/provenance.h"
 
-#include <gonio/mapping/base/bytes.h>
-#include <gonio/mapping/base/error.h>
-#include <openssl/evp.h>
-
 #include <array>
 #include <fstream>
 #include <memory>
+
+#include <openssl/evp.h>
+
+#include <gonio/mapping/base/bytes.h>
+#include <gonio/mapping/base/error.h>
 
 namespace gonio {
 
@@ -33,7 +34,10 @@ std::string sha256_of(const std::filesystem::path& path) {
 std::string command_line(const std::vector<std::string>& arguments) {
   std::string line = "gonio";
   for (const std::string& argument : arguments) {
-    const bool plain = !argument.empty() && argument.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./:=,+-@%") == std::string::npos;
+    const bool plain =
+        !argument.empty() &&
+        argument.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./:=,+-@%") ==
+            std::string::npos;
     line += ' ';
     if (plain) {
       line += argument;

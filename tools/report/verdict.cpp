@@ -45,9 +45,9 @@ std::string verdict(const MaterialReport& material) {
     return text.str();
   }
   const MethodReport* next = best_but(material, best);
-  text << "Sample it with " << title(*best) << ": " << number(best->ns.sample) << " ns a sample, mean relative variance "
-       << number(mean_relvar(*best)) << ", " << number(efficiency(*best) / efficiency(*next)) << "× as efficient as the next best, "
-       << title(*next) << ".";
+  text << "Sample it with " << title(*best) << ": " << number(best->ns.sample)
+       << " ns a sample, mean relative variance " << number(mean_relvar(*best)) << ", "
+       << number(efficiency(*best) / efficiency(*next)) << "× as efficient as the next best, " << title(*next) << ".";
   const auto lobes = compare_lobes(material);
   if (lobes && lobes->enough) {
     text << " A fit of " << lobes->lobes.substr(5) << " GGX lobes is enough as a sampler.";

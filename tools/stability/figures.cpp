@@ -16,14 +16,16 @@ namespace {
 constexpr double degree = pi<double> / 180;
 
 void begin(std::ostream& out, double width, double height, const std::string& title, const std::string& subtitle) {
-  out << std::fixed << std::setprecision(1) << "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " << width << ' ' << height
-      << "\" font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"" << width << "\" height=\"" << height
-      << "\" fill=\"white\"/>\n<text x=\"20\" y=\"26\" font-size=\"17\">" << title << "</text>\n<text x=\"20\" y=\"45\" fill=\"#555\">"
-      << subtitle << "</text>\n";
+  out << std::fixed << std::setprecision(1) << "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " << width
+      << ' ' << height << "\" font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"" << width << "\" height=\""
+      << height << "\" fill=\"white\"/>\n<text x=\"20\" y=\"26\" font-size=\"17\">" << title
+      << "</text>\n<text x=\"20\" y=\"45\" fill=\"#555\">" << subtitle << "</text>\n";
 }
 
-void text(std::ostream& out, double x, double y, const std::string& what, const char* anchor = "start", const char* more = "") {
-  out << "<text x=\"" << x << "\" y=\"" << y << "\" text-anchor=\"" << anchor << "\" " << more << '>' << what << "</text>\n";
+void text(std::ostream& out, double x, double y, const std::string& what, const char* anchor = "start",
+          const char* more = "") {
+  out << "<text x=\"" << x << "\" y=\"" << y << "\" text-anchor=\"" << anchor << "\" " << more << '>' << what
+      << "</text>\n";
 }
 
 std::string fixed(double x, int digits) {
@@ -41,9 +43,9 @@ struct Plot {
 
   void axes(std::ostream& out, const std::string& caption, double step, int digits) const {
     out << "<g stroke=\"#ccc\">\n";
-    for (int t = 0; t <= 90; t += 15)
-      out << "<path d=\"M" << px(t * degree) << ' ' << y << 'v' << height << "\"/>\n";
-    for (double v = low; v < high + step / 2; v += step) out << "<path d=\"M" << x << ' ' << py(v) << 'h' << width << "\"/>\n";
+    for (int t = 0; t <= 90; t += 15) out << "<path d=\"M" << px(t * degree) << ' ' << y << 'v' << height << "\"/>\n";
+    for (double v = low; v < high + step / 2; v += step)
+      out << "<path d=\"M" << x << ' ' << py(v) << 'h' << width << "\"/>\n";
     out << "</g>\n";
     for (int t = 0; t <= 90; t += 15) text(out, px(t * degree), y + height + 16, std::to_string(t), "middle");
     for (double v = low; v < high + step / 2; v += step) text(out, x - 6, py(v) + 4, fixed(v, digits), "end");
@@ -130,26 +132,35 @@ void write_chart(const std::filesystem::path& path, const std::vector<StabilityR
   const double height = top + cell_height * static_cast<double>(variants.size()) + 65;
   write_stream_atomically(path, [&](std::ostream& out) {
     begin(out, width, height, "Where methods fail",
-          "Decimal logarithm of the largest error over the bound; red cells fail: e by that error, b by bias, c by chi-square.");
+          "Decimal logarithm of the largest error over the bound; red cells fail: e by that error, b by bias, c by "
+          "chi-square.");
     for (const std::string& name : inputs) {
       const double x = left + cell_width * (index(inputs, name) + 0.6);
       out << "<text transform=\"translate(" << x << ' ' << top - 8 << ") rotate(-50)\">" << name << "</text>\n";
     }
     for (const std::string& name : variants) {
       const bool library = name.rfind("gonio-", 0) == 0;
-      text(out, left - 8, top + cell_height * (index(variants, name) + 0.7), name, "end", library ? "font-weight=\"bold\"" : "");
+      text(out, left - 8, top + cell_height * (index(variants, name) + 0.7), name, "end",
+           library ? "font-weight=\"bold\"" : "");
     }
     for (const StabilityRow& row : rows) {
-      const double x = left + cell_width * index(inputs, row.input), y = top + cell_height * index(variants, row.variant);
+      const double x = left + cell_width * index(inputs, row.input),
+                   y = top + cell_height * index(variants, row.variant);
       const double excess = std::log10(std::max(row.max_error / row.bound, 1e-3));
       const double t = std::clamp(0.25 + 0.75 * excess / 6, 0.25, 1.0);
       const auto blend = [&](int to) { return static_cast<int>(255 + t * (to - 255)); };
-      out << "<rect x=\"" << x << "\" y=\"" << y << "\" width=\"" << cell_width - 2 << "\" height=\"" << cell_height - 2 << "\" fill=\"";
-      if (row.fails()) out << "rgb(" << blend(200) << ',' << blend(30) << ',' << blend(40) << ")\"/>\n";
-      else out << "#cfe8d3\"/>\n";
+      out << "<rect x=\"" << x << "\" y=\"" << y << "\" width=\"" << cell_width - 2 << "\" height=\"" << cell_height - 2
+          << "\" fill=\"";
+      if (row.fails())
+        out << "rgb(" << blend(200) << ',' << blend(30) << ',' << blend(40) << ")\"/>\n";
+      else
+        out << "#cfe8d3\"/>\n";
       std::string label = row.max_error > 0 && excess > -3 ? fixed(excess, 1) : "";
-      if (row.fails()) label += std::string(" ") + (row.error_fails ? "e" : "") + (row.bias_fails ? "b" : "") + (row.chi2_fails ? "c" : "");
-      text(out, x + cell_width / 2 - 1, y + 15, label, "middle", row.fails() && t > 0.6 ? "font-size=\"9.5\" fill=\"white\"" : "font-size=\"9.5\"");
+      if (row.fails())
+        label +=
+            std::string(" ") + (row.error_fails ? "e" : "") + (row.bias_fails ? "b" : "") + (row.chi2_fails ? "c" : "");
+      text(out, x + cell_width / 2 - 1, y + 15, label, "middle",
+           row.fails() && t > 0.6 ? "font-size=\"9.5\" fill=\"white\"" : "font-size=\"9.5\"");
     }
     const double y = height - 35;
     text(out, left, y, "Green: all three hold. A blank or negative number: below the bound. Bold: the library's own.");
@@ -160,7 +171,8 @@ void write_chart(const std::filesystem::path& path, const std::vector<StabilityR
 void write_figure_3(const std::filesystem::path& path) {
   write_stream_atomically(path, [](std::ostream& out) {
     begin(out, 1250, 385, "The error of M_E (Havran et al. 2003, Fig. 3)",
-          "A density that falls from 1 to 0 between neighbouring parallels, linear in theta (d_C), is read as linear in sqrt(1 - cos theta) "
+          "A density that falls from 1 to 0 between neighbouring parallels, linear in theta (d_C), is read as linear "
+          "in sqrt(1 - cos theta) "
           "(d_R). Errors: absolute black, relative orange.");
     const Plot density{60, 95, 340, 230, 0, 1};
     density.axes(out, "density, N = 2: d_C blue, d_R red", 0.2, 1);
@@ -170,8 +182,9 @@ void write_figure_3(const std::filesystem::path& path) {
     for (const int intervals : {1, 10}) {
       const WorstReading worst = worst_reading_error(intervals);
       const Plot error{x, 95, 340, 230, 0, intervals == 1 ? 25.0 : 5.0};
-      error.axes(out, std::string(intervals == 1 ? "N = 2" : "ten intervals") + ", error [%]: to " + fixed(100 * worst.absolute, 2) + " and " +
-                          fixed(100 * worst.relative, 1),
+      error.axes(out,
+                 std::string(intervals == 1 ? "N = 2" : "ten intervals") + ", error [%]: to " +
+                     fixed(100 * worst.absolute, 2) + " and " + fixed(100 * worst.relative, 1),
                  intervals == 1 ? 5 : 1, 0);
       error.curve(out, "#222", [&](double t) { return 100 * std::abs(falling(t, intervals).absolute); });
       error.curve(out, "#d95f02", [&](double t) { return 100 * std::abs(falling(t, intervals).relative); });
@@ -185,9 +198,11 @@ void write_figure_6(const std::filesystem::path& path) {
   constexpr double radius = 170, gap = 30, top = 70;
   write_stream_atomically(path, [&](std::ostream& out) {
     begin(out, 4 * 2 * radius + 5 * gap, top + 2 * radius + 60, "The maps at work (Havran et al. 2003, Fig. 6)",
-          "A 24 x 24 grid of the unit square (red) and 1024 points of a Hammersley set, as diagrams of N = 6 parallels and M = 7 "
+          "A 24 x 24 grid of the unit square (red) and 1024 points of a Hammersley set, as diagrams of N = 6 parallels "
+          "and M = 7 "
           "meridians (grey) carry them to the disk.");
-    const char* const captions[] = {"(a) the unit square", "(b) constant density", "(c) random densities", "(d) as (c), one patch of zeros"};
+    const char* const captions[] = {"(a) the unit square", "(b) constant density", "(c) random densities",
+                                    "(d) as (c), one patch of zeros"};
     for (int panel = 0; panel < 4; ++panel) {
       DiagramGrid grid = figure_6_grid(panel == 3);
       if (panel < 2) std::fill(grid.density.begin(), grid.density.end(), 1.0);
@@ -201,22 +216,25 @@ void write_figure_6(const std::filesystem::path& path) {
         return {cx + radius * r * std::cos(m.phi), cy - radius * r * std::sin(m.phi)};
       };
       if (panel == 0) {
-        out << "<rect x=\"" << cx - radius << "\" y=\"" << cy - radius << "\" width=\"" << 2 * radius << "\" height=\"" << 2 * radius
-            << "\" fill=\"none\" stroke=\"#222\"/>\n";
+        out << "<rect x=\"" << cx - radius << "\" y=\"" << cy - radius << "\" width=\"" << 2 * radius << "\" height=\""
+            << 2 * radius << "\" fill=\"none\" stroke=\"#222\"/>\n";
       } else {
         if (panel == 3) {  // the patch
           out << "<path fill=\"#fee8a0\" d=\"";
           for (int k = 0; k <= 40; ++k) {
             const bool back = k > 20;
-            const double a = grid.phi[1] + (grid.phi[2] - grid.phi[1]) * (back ? 40 - k : k) / 20.0, r = radius * grid.r[back ? 3 : 2];
+            const double a = grid.phi[1] + (grid.phi[2] - grid.phi[1]) * (back ? 40 - k : k) / 20.0,
+                         r = radius * grid.r[back ? 3 : 2];
             out << (k == 0 ? 'M' : 'L') << cx + r * std::cos(a) << ' ' << cy - r * std::sin(a);
           }
           out << "Z\"/>\n";
         }
         out << "<g fill=\"none\" stroke=\"#999\">\n";
-        for (const double r : grid.r) out << "<circle cx=\"" << cx << "\" cy=\"" << cy << "\" r=\"" << radius * r << "\"/>\n";
+        for (const double r : grid.r)
+          out << "<circle cx=\"" << cx << "\" cy=\"" << cy << "\" r=\"" << radius * r << "\"/>\n";
         for (const double a : grid.phi)
-          out << "<path d=\"M" << cx << ' ' << cy << 'L' << cx + radius * std::cos(a) << ' ' << cy - radius * std::sin(a) << "\"/>\n";
+          out << "<path d=\"M" << cx << ' ' << cy << 'L' << cx + radius * std::cos(a) << ' '
+              << cy - radius * std::sin(a) << "\"/>\n";
         out << "</g>\n";
       }
       out << "<g fill=\"none\" stroke=\"#b2182b\" stroke-width=\"0.6\">\n";

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <gonio/mapping/diagram/diagram.h>
+
 #include "tools/stability/measure_row.h"
 
 namespace gonio {

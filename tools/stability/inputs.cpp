@@ -24,7 +24,8 @@ std::vector<StabilityInput> stability_inputs() {
   std::vector<StabilityInput> inputs;
   for (proof::GalleryStack& entry : proof::gallery_stacks())
     if (entry.grid.diagrams.size() > 2)
-      inputs.push_back({entry.name, entry.reason, std::move(entry.grid.diagrams[1]), std::move(entry.grid.diagrams[2])});
+      inputs.push_back(
+          {entry.name, entry.reason, std::move(entry.grid.diagrams[1]), std::move(entry.grid.diagrams[2])});
 
   // What single formulas are sensitive to.
   std::vector<double> phi;
@@ -33,11 +34,11 @@ std::vector<StabilityInput> stability_inputs() {
   const auto nearly = [&](double, double) { return 1 + 2e-6 * static_cast<double>(random()); };
   const std::vector<double> even{0, 0.2, 0.4, 0.6, 0.8, 1};
   const DiagramGrid first = tabulate(phi, even, nearly);
-  inputs.push_back({"nearly-constant", "densities that differ in the sixth digit: leading terms are all rounding", first,
-                    tabulate(phi, even, nearly)});
-  const DiagramGrid ring = tabulate(phi, {0, 2e-4, 4e-4, 5e-4, 6e-4, 8e-4, 2e-3, 0.1, 0.4, 0.7, 1}, [](double, double r) {
-    return 1e-7 + std::exp(-std::pow((r - 5e-4) / 8e-5, 2) / 2);
-  });
+  inputs.push_back({"nearly-constant", "densities that differ in the sixth digit: leading terms are all rounding",
+                    first, tabulate(phi, even, nearly)});
+  const DiagramGrid ring =
+      tabulate(phi, {0, 2e-4, 4e-4, 5e-4, 6e-4, 8e-4, 2e-3, 0.1, 0.4, 0.7, 1},
+               [](double, double r) { return 1e-7 + std::exp(-std::pow((r - 5e-4) / 8e-5, 2) / 2); });
   inputs.push_back({"pole-ring", "a ring of 0.04 degrees about the pole: a mirror at normal incidence", ring, ring});
   inputs.push_back({"theta-worst", "pole and horizon only, 1 and 0: the worst case of M_E in the paper",
                     tabulate({0, pi<double>}, {0, 1}, [](double, double r) { return 1 - r; }),

@@ -16,10 +16,12 @@ constexpr int error_points = 1 << 12;
 constexpr double quadrature_error = 3e-4;
 
 /// Edges at the lines of the diagrams and at quantiles of `x`; none closer than the floats resolve.
-std::vector<double> edges(std::vector<double> x, const std::vector<double>& lines, int quantiles, double first, double last) {
+std::vector<double> edges(std::vector<double> x, const std::vector<double>& lines, int quantiles, double first,
+                          double last) {
   std::sort(x.begin(), x.end());
   std::vector<double> wanted = lines;
-  for (int k = 1; k < quantiles; ++k) wanted.push_back(x[x.size() * static_cast<std::size_t>(k) / static_cast<std::size_t>(quantiles)]);
+  for (int k = 1; k < quantiles; ++k)
+    wanted.push_back(x[x.size() * static_cast<std::size_t>(k) / static_cast<std::size_t>(quantiles)]);
   std::sort(wanted.begin(), wanted.end());
   std::vector<double> result{first};
   for (const double w : wanted) {
@@ -50,15 +52,17 @@ proof::Bins bins_of(const StabilityInput& input, bool both) {
     }
     r_lines.insert(r_lines.end(), d.r.begin(), d.r.end());
   }
-  return {edges(std::move(phi), phi_lines, both ? 25 : 33, -pi<double>, pi<double>), edges(std::move(r), r_lines, both ? 17 : 25, 0, 1)};
+  return {edges(std::move(phi), phi_lines, both ? 25 : 33, -pi<double>, pi<double>),
+          edges(std::move(r), r_lines, both ? 17 : 25, 0, 1)};
 }
 
 /// What is integrated together with the value: smooth, and different in every direction of change.
 double environment(const glm::vec3& w) { return (1 + 0.9 * w.x) * (0.2 + w.z); }
 
-StabilityRow measure_row(const Variant& variant, const StabilityInput& input, const proof::Bins& bins, double significance,
-                         std::uint32_t seed) {
-  StabilityRow row{variant.name, input.name, variant.error_of, variant.why, 0, variant.bound, 0, 0, 0, 0, false, false, false};
+StabilityRow measure_row(const Variant& variant, const StabilityInput& input, const proof::Bins& bins,
+                         double significance, std::uint32_t seed) {
+  StabilityRow row{variant.name, input.name, variant.error_of, variant.why, 0, variant.bound, 0, 0, 0, 0, false,
+                   false,        false};
 
   proof::Random random(seed);
   constexpr float special[] = {0x1p-24f, 0x1p-12f, 0.25f, 0.5f, 1 - 0x1p-24f};
@@ -85,7 +89,8 @@ StabilityRow measure_row(const Variant& variant, const StabilityInput& input, co
   row.lost = chi2.outside + chi2.where_zero;
 
   double expected = 0;
-  for (const double e : bins.integrate([&](const glm::vec3& w) { return variant.value(w) * environment(w); })) expected += e;
+  for (const double e : bins.integrate([&](const glm::vec3& w) { return variant.value(w) * environment(w); }))
+    expected += e;
   const double count = static_cast<double>(draws), mean = sum / count;
   row.bias = mean / expected - 1;
   row.standard_error = std::sqrt(std::max(sum2 / count - mean * mean, 0.0) / count) / expected;

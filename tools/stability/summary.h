@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <iosfwd>
+
 #include <nlohmann/json.hpp>
 
 namespace gonio {

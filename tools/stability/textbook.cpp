@@ -3,7 +3,9 @@
 namespace gonio::textbook {
 
 Arrays::Arrays(const DiagramGrid& grid)
-    : phi(grid.phi.begin(), grid.phi.end()), r(grid.r.begin(), grid.r.end()), density(grid.density.begin(), grid.density.end()) {
+    : phi(grid.phi.begin(), grid.phi.end()),
+      r(grid.r.begin(), grid.r.end()),
+      density(grid.density.begin(), grid.density.end()) {
   const std::size_t m = phi.size(), n = r.size();
   double sum = 0, previous = 0;
   for (std::size_t i = 0; i < m; ++i) {

@@ -71,7 +71,8 @@ struct Arrays {
   template <class Quadratic, class Cubic>
   Polar<float> map(float u, float v, const Quadratic& solve_phi, const Cubic& solve_r) const {
     const float target = u * cumulative_phi.back();
-    const std::size_t i = static_cast<std::size_t>(find_cell(cumulative_phi.data(), static_cast<int>(phi.size()), target));
+    const std::size_t i =
+        static_cast<std::size_t>(find_cell(cumulative_phi.data(), static_cast<int>(phi.size()), target));
     const std::size_t n = r.size();
     const float m0 = below(i, n - 1), m1 = below(i + 1, n - 1);
     const float a = solve_phi(m0, m1, (target - cumulative_phi[i]) / (cumulative_phi[i + 1] - cumulative_phi[i]));
@@ -80,7 +81,8 @@ struct Arrays {
     const float mass = v * blend(n - 1);
     std::size_t j = 0;
     while (j + 2 < n && blend(j + 1) < mass) ++j;
-    const RadialCell<float> cell{r[j], r[j + 1] - r[j], b * at(i, j) + a * at(i + 1, j), b * at(i, j + 1) + a * at(i + 1, j + 1)};
+    const RadialCell<float> cell{r[j], r[j + 1] - r[j], b * at(i, j) + a * at(i + 1, j),
+                                 b * at(i, j + 1) + a * at(i + 1, j + 1)};
     const float tau = (mass - blend(j)) / cell.mass(1);
     return {cell.r0 + solve_r(cell, tau) * cell.h, phi[i] + a * (phi[i + 1] - phi[i])};
   }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <gonio/mapping/stack/stack.h>
+
 #include "tools/stability/textbook.h"
 
 namespace gonio {
@@ -39,8 +40,10 @@ Unfolded unfold(float u, Azimuth azimuth) {
 
 template <class T>
 Polar<T> fold(Polar<T> p, Azimuth azimuth) {
-  if (azimuth == Azimuth::half) p.phi = std::abs(p.phi);
-  else if (p.phi < 0) p.phi += 2 * pi<T>;
+  if (azimuth == Azimuth::half)
+    p.phi = std::abs(p.phi);
+  else if (p.phi < 0)
+    p.phi += 2 * pi<T>;
   return p;
 }
 
@@ -135,8 +138,10 @@ double mass_error(const Problem& p, float u, float v, Polar<float> at) {
   const Wide phi = at.phi, r = at.r, dphi = phi * ulp, dr = r * ulp;
   const auto m0 = d.meridian_through(phi - dphi), m = d.meridian_through(phi), m1 = d.meridian_through(phi + dphi);
   const double in_u = distance(u, {d.u_of(m0), d.u_of(m1)}, 1);
-  const double in_v = distance(v, {d.v_of(m0, r - dr), d.v_of(m0, r + dr), d.v_of(m, r - dr), d.v_of(m, r + dr),
-                                   d.v_of(m1, r - dr), d.v_of(m1, r + dr)}, 1);
+  const double in_v = distance(v,
+                               {d.v_of(m0, r - dr), d.v_of(m0, r + dr), d.v_of(m, r - dr), d.v_of(m, r + dr),
+                                d.v_of(m1, r - dr), d.v_of(m1, r + dr)},
+                               1);
   return std::max(in_u, in_v);
 }
 
@@ -153,7 +158,8 @@ double pdf_error(double claimed, const glm::vec3& w, const Density& density, std
   const auto include = [&](Wide d) { low = std::min(low, d), high = std::max(high, d); };
   for (const int dr : {-1, 1})
     for (const int dphi : {-1, 1})
-      include(density(Polar<Wide>{std::min(p.r * (1 + dr * e), Wide(1)), std::clamp(p.phi * (1 + dphi * e), -pi<Wide>, pi<Wide>)}));
+      include(density(
+          Polar<Wide>{std::min(p.r * (1 + dr * e), Wide(1)), std::clamp(p.phi * (1 + dphi * e), -pi<Wide>, pi<Wide>)}));
   for (const Wide d : images) include(d);
   return distance(claimed, {low, high}, centre > 0 ? centre : Wide(claimed));
 }
@@ -256,7 +262,8 @@ Wide cartesian_density(const Problem& p, const Diagram<Wide>& other, Wide turn, 
   const auto cross = [](const Vec3<Wide>& a, const Vec3<Wide>& b) {
     return Vec3<Wide>(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
   };
-  const Vec3<Wide> c = at(turn, v), a0 = at(turn - h, v), a1 = at(turn + h, v), b0 = at(turn, v - h), b1 = at(turn, v + h);
+  const Vec3<Wide> c = at(turn, v), a0 = at(turn - h, v), a1 = at(turn + h, v), b0 = at(turn, v - h),
+                   b1 = at(turn, v + h);
   const auto jacobian = [&](const Vec3<Wide>& da, const Vec3<Wide>& db) {
     const Vec3<Wide> n = cross(da, db);
     return std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z) / (h * h);
@@ -284,7 +291,9 @@ Variant library_stack(const StabilityInput& input, Interpolation interpolation, 
     const Draw d = sample(a, b);
     // The map's own bound allows the direction of a pair that is map_bound away.
     const auto image = [&](int du, int dv) {
-      const auto moved = [](float x, int by) { return std::clamp(x + by * Wide(map_bound) * Wide(ulp), Wide(0), Wide(1)); };
+      const auto moved = [](float x, int by) {
+        return std::clamp(x + by * Wide(map_bound) * Wide(ulp), Wide(0), Wide(1));
+      };
       const SquarePoint<Wide> q = disk_to_square(DiskPoint<Wide>{moved(a, du), moved(b, dv)});
       return exact->sample(theta_i, q.u, q.v).pdf;
     };
@@ -319,7 +328,9 @@ std::vector<Variant> make_variants(const StabilityInput& input) {
     };
   };
   const auto cell_pdf = [p](const auto& cells) {
-    return [p, &cells](const glm::vec3& w) { return static_cast<double>(cells.pdf(fold(direction_to_polar(w), p->azimuth))); };
+    return [p, &cells](const glm::vec3& w) {
+      return static_cast<double>(cells.pdf(fold(direction_to_polar(w), p->azimuth)));
+    };
   };
   const auto exact_cell_pdf = [p](Polar<Wide> at) {
     return p->exact_cells.pdf(fold(Polar<float>{static_cast<float>(at.r), static_cast<float>(at.phi)}, p->azimuth));
@@ -332,27 +343,35 @@ std::vector<Variant> make_variants(const StabilityInput& input) {
   std::vector<Variant> v;
   v.push_back(of_map(p, "cardan", "eq. 11 divides by d_j - d_j+1 and subtracts the large quotients again",
                      [good_quadratic, good_cubic](const Problem& q, float a, float b) {
-                       return q.arrays.map(a, b, good_quadratic, [](const RadialCell<float>& c, float tau) { return textbook::cardan(c, tau); });
+                       return q.arrays.map(a, b, good_quadratic, [](const RadialCell<float>& c, float tau) {
+                         return textbook::cardan(c, tau);
+                       });
                      }));
   v.push_back(of_map(p, "quadratic", "-b + sqrt(D) cancels and is divided by a difference of masses that is nearly 0",
                      [good_cubic](const Problem& q, float a, float b) {
-                       return q.arrays.map(a, b, [](float m0, float m1, float x) { return textbook::quadratic(m0, m1, x); }, good_cubic);
+                       return q.arrays.map(
+                           a, b, [](float m0, float m1, float x) { return textbook::quadratic(m0, m1, x); },
+                           good_cubic);
                      }));
-  v.push_back(of_direction(p, "acos", "cos theta rounds to 1 - k 2^-24 next to the pole: theta comes in steps of 0.02 degrees",
-                           [](Polar<float> at) { return textbook::direction(at); },
-                           [](const glm::vec3& w) { return textbook::polar(w); }));
+  v.push_back(of_direction(
+      p, "acos", "cos theta rounds to 1 - k 2^-24 next to the pole: theta comes in steps of 0.02 degrees",
+      [](Polar<float> at) { return textbook::direction(at); }, [](const glm::vec3& w) { return textbook::polar(w); }));
   v.push_back(of_pdf("constant-cells-bilinear", map_bound, "draws are uniform in a cell, the pdf read for them is not",
                      from_cells(p->exact_cells), density, density, exact_cell_pdf));
-  v.push_back(of_pdf("summed-area", map_bound, "the mass of a small cell is lost in the difference of four sums of order 1",
+  v.push_back(of_pdf("summed-area", map_bound,
+                     "the mass of a small cell is lost in the difference of four sums of order 1",
                      from_cells(p->float_cells), cell_pdf(p->float_cells), cell_pdf(p->exact_cells), exact_cell_pdf));
-  v.push_back(of_pdf("theta-linear", map_bound, "draws are linear in r = sqrt(1 - cos theta) between parallels, the table is linear in theta",
+  v.push_back(of_pdf("theta-linear", map_bound,
+                     "draws are linear in r = sqrt(1 - cos theta) between parallels, the table is linear in theta",
                      from_diagram, theta_linear, theta_linear, density));
   v.push_back(of_pdf("nearest-interpolated", pdf_bound, "draws follow one diagram, values and pdf a blend of two",
                      from_diagram, blend, blend, density));
   {
-    Variant c = of_pdf("cartesian", pdf_bound, "the map folds and leaves parts of the hemisphere out; a blend of the pdfs is not its density",
-                       [p](float a, float b) { return cartesian(p->diagram, p->other, static_cast<float>(p->alpha), a, b); },
-                       blend, blend, density);
+    Variant c = of_pdf(
+        "cartesian", pdf_bound,
+        "the map folds and leaves parts of the hemisphere out; a blend of the pdfs is not its density",
+        [p](float a, float b) { return cartesian(p->diagram, p->other, static_cast<float>(p->alpha), a, b); }, blend,
+        blend, density);
     c.error = [p, blend, exact_other = Diagram<Wide>(p->other.grid())](float a, float b) {
       const glm::vec3 w = cartesian(p->diagram, p->other, static_cast<float>(p->alpha), a, b);
       const Wide actual = cartesian_density(*p, exact_other, a, b);
@@ -362,11 +381,14 @@ std::vector<Variant> make_variants(const StabilityInput& input) {
   }
 
   v.push_back(of_map(p, "gonio-diagram", "Diagram: roots as quotients of positive sums", library_map));
-  v.push_back(of_direction(p, "gonio-polar", "polar_to_direction, direction_to_polar: 1 - cos as sin^2 / (1 + cos) keeps the digits next to the pole",
-                           [](Polar<float> at) { return polar_to_direction(at); },
-                           [](const glm::vec3& w) { return direction_to_polar(w); }));
-  v.push_back(of_pdf("gonio-theta-weighted", map_bound, "the diagram's own pdf, and the table's value over it as weight",
-                     from_diagram, float_pdf, theta_linear, density));
+  v.push_back(of_direction(
+      p, "gonio-polar",
+      "polar_to_direction, direction_to_polar: 1 - cos as sin^2 / (1 + cos) keeps the digits next to the pole",
+      [](Polar<float> at) { return polar_to_direction(at); },
+      [](const glm::vec3& w) { return direction_to_polar(w); }));
+  v.push_back(of_pdf("gonio-theta-weighted", map_bound,
+                     "the diagram's own pdf, and the table's value over it as weight", from_diagram, float_pdf,
+                     theta_linear, density));
   v.push_back(library_stack(input, Interpolation::nearest, "gonio-nearest", "draws and pdf of one diagram"));
   v.push_back(library_stack(input, Interpolation::mixture, "gonio-mixture", "draws from either diagram, pdf of both"));
   v.push_back(library_stack(input, Interpolation::displacement, "gonio-displacement",

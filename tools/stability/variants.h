@@ -1,11 +1,13 @@
 #pragma once
 
 #include <functional>
-#include <glm/vec3.hpp>
 #include <string>
 #include <vector>
 
+#include <glm/vec3.hpp>
+
 #include <gonio/brdf/proof/statistics/bins.h>
+
 #include "tools/stability/inputs.h"
 
 namespace gonio {

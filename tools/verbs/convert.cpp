@@ -1,29 +1,31 @@
-#include <gonio/brdf/exr/stack_file.h>
-#include <gonio/brdf/formats/sniff.h>
-#include <gonio/brdf/resample/table_resample.h>
-#include <gonio/fitting/model/synth.h>
-#include <gonio/mapping/base/atomic_file.h>
-#include <gonio/mapping/base/error.h>
-#include "tools/cli/check_not_input.h"
-#include "tools/cli/check_writable.h"
-#include "tools/verbs/verbs.h"
-#include "tools/convert/convert_rgl.h"
-#include "tools/convert/convert_scene.h"
-#include "tools/convert/convert_stack.h"
-#include "tools/convert/stack_comments.h"
-#include "tools/cli/failures.h"
-#include "tools/cli/input.h"
-#include "tools/cli/options.h"
-#include "tools/cli/progress.h"
-#include "tools/cli/written.h"
-
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <map>
 #include <memory>
 #include <string>
 #include <tuple>
 #include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include <gonio/brdf/exr/stack_file.h>
+#include <gonio/brdf/formats/sniff.h>
+#include <gonio/brdf/resample/table_resample.h>
+#include <gonio/fitting/model/synth.h>
+#include <gonio/mapping/base/atomic_file.h>
+#include <gonio/mapping/base/error.h>
+
+#include "tools/cli/check_not_input.h"
+#include "tools/cli/check_writable.h"
+#include "tools/cli/failures.h"
+#include "tools/cli/input.h"
+#include "tools/cli/options.h"
+#include "tools/cli/progress.h"
+#include "tools/cli/written.h"
+#include "tools/convert/convert_rgl.h"
+#include "tools/convert/convert_scene.h"
+#include "tools/convert/convert_stack.h"
+#include "tools/convert/stack_comments.h"
+#include "tools/verbs/verbs.h"
 
 namespace gonio {
 namespace {
@@ -40,11 +42,9 @@ struct Options {
 };
 
 /// Options that would have no effect are refused.
-void refuse(const CLI::App& verb, std::initializer_list<const char*> options,
-            const std::string& why) {
+void refuse(const CLI::App& verb, std::initializer_list<const char*> options, const std::string& why) {
   for (const char* option : options) {
-    if (verb.count(option) > 0)
-      throw Error(std::string(option) + ": found one, expected none: " + why);
+    if (verb.count(option) > 0) throw Error(std::string(option) + ": found one, expected none: " + why);
   }
 }
 
@@ -54,8 +54,7 @@ void refuse_policies(const CLI::App& verb, const std::string& why) {
 
 void stack_to_stack(const CLI::App& verb, const Options& options, const std::string& extension) {
   if (extension != ".exr") {
-    throw Error(options.in +
-                ": format: found a stack file, expected a table (MERL, RGL or MBSDF) to write " +
+    throw Error(options.in + ": format: found a stack file, expected a table (MERL, RGL or MBSDF) to write " +
                 extension);
   }
   refuse(verb, stack_options, "a stack file keeps its diagrams");
@@ -101,8 +100,8 @@ void model_to_table(const CLI::App& verb, const Options& options, const std::str
   }
   const auto [thetas, phis] = parse_grid("--grid", options.grid.empty() ? "90x180" : options.grid);
   if (thetas > max_grid_side || phis > max_grid_side) {
-    throw Error("--grid: found " + options.grid + ", expected at most " +
-                std::to_string(max_grid_side) + " thetas and phis");
+    throw Error("--grid: found " + options.grid + ", expected at most " + std::to_string(max_grid_side) +
+                " thetas and phis");
   }
   write_mbsdf(options.out, synthesize_mbsdf(model, thetas, phis));
 }
@@ -121,7 +120,8 @@ void scene_to_stacks(const CLI::App& verb, const Options& options) {
     if (verb.count(needed) == 0) throw CLI::RequiredError(needed);
   for (const CLI::Option* option : verb.get_options()) {
     const std::string name = option->get_name();
-    if (name != "--scene" && name != "--budget" && name != "--output") refuse(verb, {name.c_str()}, "--scene has its own");
+    if (name != "--scene" && name != "--budget" && name != "--output")
+      refuse(verb, {name.c_str()}, "--scene has its own");
   }
   convert_scene(options.scene, *options.stack.budget, options.scene_out);
 }
@@ -130,8 +130,7 @@ void scene_to_stacks(const CLI::App& verb, const Options& options) {
 void convert_file(const CLI::App& verb, Options& options) {
   check_not_input(options.out, {options.in});
   const bool any_kind = std::filesystem::path(options.out).extension().empty() && options.stack.max_variance;
-  const std::string extension =
-      any_kind ? "" : checked_extension(options.out, {".exr", ".binary", ".mbsdf", ".bsdf"});
+  const std::string extension = any_kind ? "" : checked_extension(options.out, {".exr", ".binary", ".mbsdf", ".bsdf"});
   if (extension != ".exr") refuse(verb, {"--comment"}, "only a stack file has comments: OUT.exr");
   if (extension == ".bsdf") {
     any_to_rgl(verb, options);
@@ -174,13 +173,16 @@ std::vector<std::string> outputs_in(const std::filesystem::path& folder, const s
   for (const std::string& in : inputs) {
     const std::string name = std::filesystem::path(in).stem().string() + extension;
     const auto [other, added] = taken.emplace(name, in);
-    if (!added) throw Error(in + ": would become " + (folder / name).string() + ", as " + other->second + " does; nothing was written");
+    if (!added)
+      throw Error(in + ": would become " + (folder / name).string() + ", as " + other->second +
+                  " does; nothing was written");
     outputs.push_back((folder / name).string());
   }
   return outputs;
 }
 
-void convert_each(const CLI::App& verb, Options& options, const std::vector<std::string>& inputs, const std::string& folder) {
+void convert_each(const CLI::App& verb, Options& options, const std::vector<std::string>& inputs,
+                  const std::string& folder) {
   refuse(verb, {"--front"}, "it describes one material");
   const std::vector<std::string> outputs = outputs_in(folder, inputs, "." + options.format);
   check_writable(outputs.front());
@@ -217,8 +219,8 @@ void convert(const CLI::App& verb, Options& options) {
 void add_convert(CLI::App& app) {
   auto options = std::make_shared<Options>();
   const BsdfOptions& stack = options->stack.by_hand;
-  CLI::App* verb = app.add_subcommand(
-      "convert", "A table as a stack file (.exr), MERL (.binary), MBSDF (.mbsdf) or RGL (.bsdf)");
+  CLI::App* verb =
+      app.add_subcommand("convert", "A table as a stack file (.exr), MERL (.binary), MBSDF (.mbsdf) or RGL (.bsdf)");
   verb->add_option("IN", options->paths,
                    "MERL, RGL or MBSDF tables, stack files, or fit.json, known by their content, and as the last OUT: "
                    "the file to write; its extension, .exr, .binary, .mbsdf or .bsdf, is its format. With none and "
@@ -230,12 +232,12 @@ void add_convert(CLI::App& app) {
       ->type_name("exr|binary|mbsdf|bsdf")
       ->capture_default_str();
   verb->add_option("--grid", options->grid,
-                   ".exr: at most M meridians and N parallels in a diagram [" +
-                       std::to_string(stack.meridians) + "x" + std::to_string(stack.parallels) +
-                       "]; .mbsdf: M thetas and N phis [90x180]")
+                   ".exr: at most M meridians and N parallels in a diagram [" + std::to_string(stack.meridians) + "x" +
+                       std::to_string(stack.parallels) + "]; .mbsdf: M thetas and N phis [90x180]")
       ->type_name("MxN");
   verb->add_option("--comment", options->stack.comments,
-                   ".exr: a line for the comments of the file, after those that say how it was made: who measured it, its licence. "
+                   ".exr: a line for the comments of the file, after those that say how it was made: who measured it, "
+                   "its licence. "
                    "May be given more than once")
       ->type_name("TEXT")
       ->allow_extra_args(false);
@@ -254,7 +256,8 @@ void add_convert(CLI::App& app) {
                  "spectral variants need them");
   add_cell_policies(*verb, options->policies);
   verb->footer(
-      "IN OUT, or IN ... FOLDER, or --scene: of several materials, what fails is named at the end, and the others are written.\n"
+      "IN OUT, or IN ... FOLDER, or --scene: of several materials, what fails is named at the end, and the others are "
+      "written.\n"
       "MERL to MERL, RGL to RGL, and MBSDF to MBSDF without --grid, keep the values as they are stored.\n"
       "Anything else is sampled at the cell centres of OUT. A fit.json is a table of MERL's cells\n"
       "for a stack, and the model itself at the cell centres of a table.\n\n"

@@ -1,20 +1,3 @@
-#include <gonio/brdf/exr/stack_file.h>
-#include <gonio/fitting/fit/fit_json.h>
-#include <gonio/mapping/base/atomic_file.h>
-#include <gonio/mapping/base/did_you_mean.h>
-#include <gonio/mapping/base/error.h>
-#include "tools/cli/check_not_input.h"
-#include "tools/cli/check_writable.h"
-#include "tools/cli/failures.h"
-#include "tools/verbs/verbs.h"
-#include "tools/cli/input.h"
-#include "tools/cli/number.h"
-#include "tools/cli/options.h"
-#include "tools/cli/progress.h"
-#include "tools/measure/table_fits.h"
-#include "tools/cli/written.h"
-
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -23,6 +6,25 @@
 #include <sstream>
 #include <string>
 #include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include <gonio/brdf/exr/stack_file.h>
+#include <gonio/fitting/fit/fit_json.h>
+#include <gonio/mapping/base/atomic_file.h>
+#include <gonio/mapping/base/did_you_mean.h>
+#include <gonio/mapping/base/error.h>
+
+#include "tools/cli/check_not_input.h"
+#include "tools/cli/check_writable.h"
+#include "tools/cli/failures.h"
+#include "tools/cli/input.h"
+#include "tools/cli/number.h"
+#include "tools/cli/options.h"
+#include "tools/cli/progress.h"
+#include "tools/cli/written.h"
+#include "tools/measure/table_fits.h"
+#include "tools/verbs/verbs.h"
 
 namespace gonio {
 namespace {
@@ -73,8 +75,7 @@ void check_output(const std::string& output, const std::vector<std::string>& inp
 /// A dash where nothing was measured.
 std::string error_text(double error) { return std::isnan(error) ? "-" : number(error); }
 
-void print_errors(const char* label, double FitErrors::*measure, const char* unit,
-                  const FitErrorReport& errors) {
+void print_errors(const char* label, double FitErrors::*measure, const char* unit, const FitErrorReport& errors) {
   std::printf("  %-22s %-11s %-11s %s\n", label, error_text(errors.inside.*measure).c_str(),
               error_text(errors.beyond.*measure).c_str(), unit);
 }
@@ -82,15 +83,14 @@ void print_errors(const char* label, double FitErrors::*measure, const char* uni
 void print_fit(const Options& options, const StageFit& stage, double seconds) {
   const FitSummary& s = stage.fit.summary;
   std::printf("%s\n", describe(stage.fit.model).c_str());
-  std::printf("%s after %d iterations, cost %.6g from %.6g, %d pairs of directions, %.1f s\n",
-              to_string(s.termination), s.iterations, s.cost, s.initial_cost, s.samples, seconds);
+  std::printf("%s after %d iterations, cost %.6g from %.6g, %d pairs of directions, %.1f s\n", to_string(s.termination),
+              s.iterations, s.cost, s.initial_cost, s.samples, seconds);
   std::printf("%d of %zu starts within 1 %% of that cost\n", s.agreeing_starts, s.costs.size());
   std::printf("  %-22s %-11s %s\n", "parameter", "value", "range over those starts");
   for (const ParameterSpread& p : s.parameters) {
     std::printf("  %-22s %-11.5g %.5g to %.5g\n", p.name.c_str(), p.value, p.min, p.max);
   }
-  std::printf("  %-22s %-11s %s\n", "error",
-              ("to " + number(options.cutoff_degrees) + " deg").c_str(), "beyond");
+  std::printf("  %-22s %-11s %s\n", "error", ("to " + number(options.cutoff_degrees) + " deg").c_str(), "beyond");
   const FitErrorReport& e = stage.errors;
   print_errors("cosine-weighted RMS", &FitErrors::cosine_rms, "1/sr", e);
   print_errors("log RMS", &FitErrors::log_rms, "natural logarithm", e);
@@ -114,8 +114,7 @@ void fit_one(const Options& options) {
                   fits.stages[k].errors.inside.relative_l1);
     }
     const double error = fits.stages[chosen].errors.inside.relative_l1;
-    std::printf("; chosen: %zu, the fewest within %.0f %% of the best", chosen + 1,
-                100 * (enough_factor - 1));
+    std::printf("; chosen: %zu, the fewest within %.0f %% of the best", chosen + 1, 100 * (enough_factor - 1));
     if (chosen + 1 < fits.stages.size()) {
       double best = error;
       for (const StageFit& s : fits.stages) best = std::min(best, s.errors.inside.relative_l1);
@@ -142,8 +141,7 @@ void write_rows(std::ostream& out, const TableFits& fits) {
       for (const double x : {e.cosine_rms, e.log_rms, e.relative_l1, e.albedo, e.delta_e})
         out << " | " << error_text(x);
     }
-    out << " | " << number(fit.summary.cost, 4) << " | " << to_string(fit.summary.termination)
-        << " | ";
+    out << " | " << number(fit.summary.cost, 4) << " | " << to_string(fit.summary.termination) << " | ";
     if (k + 1 == fits.stages.size()) out << number(fits.seconds, 2);
     out << " |\n";
   }
@@ -165,14 +163,15 @@ void fit_to_table(const Options& options) {
   Failures failures;
   const std::vector<std::string> inputs = usable_inputs(options, failures);
   std::ostringstream text;
-  text << "# Errors of fitted lobes\n\nModel `"
-       << (options.model == "auto" ? default_fit_form : options.model)
+  text << "# Errors of fitted lobes\n\nModel `" << (options.model == "auto" ? default_fit_form : options.model)
        << "` and its stages with fewer specular lobes; cut-off " << number(options.cutoff_degrees)
        << " degrees, compression " << to_text(options.fit.compression) << ", channels "
        << (options.fit.separate_channels ? "separate" : "shared")
        << ". Cosine-weighted RMS in 1/sr, log RMS as natural logarithm, relative L1 and albedo "
-          "without unit, ΔE is CIEDE2000 of a lit sphere; each inside the cut-off, then beyond it, and of what was measured alone: a dash where nothing was. "
-          "The cost is what the fit minimises: more lobes never raise it, while the errors, which weigh differently, may rise a little. Seconds are of all stages of a material together."
+          "without unit, ΔE is CIEDE2000 of a lit sphere; each inside the cut-off, then beyond it, and of what was "
+          "measured alone: a dash where nothing was. "
+          "The cost is what the fit minimises: more lobes never raise it, while the errors, which weigh differently, "
+          "may rise a little. Seconds are of all stages of a material together."
           "\n\n| material | lobes | RMS | log RMS | L1 | albedo | ΔE | RMS beyond | log RMS beyond "
           "| L1 beyond | albedo beyond | ΔE beyond | cost | termination | s |\n|";
   for (int k = 0; k < 15; ++k) text << "---|";
@@ -196,29 +195,25 @@ void fit_to_table(const Options& options) {
 
 void fit_verb(Options& options) {
   if (!(options.cutoff_degrees > 0 && options.cutoff_degrees <= 90)) {
-    throw Error("--cutoff: found " + number(options.cutoff_degrees) +
-                ", expected more than 0, up to 90");
+    throw Error("--cutoff: found " + number(options.cutoff_degrees) + ", expected more than 0, up to 90");
   }
   options.fit.grazing_cutoff = options.cutoff_degrees * pi<double> / 180;
   options.fit.solid_angle_weights = !options.samples_count_alike;
   if (!options.table.empty()) {
-    if (!options.out.empty())
-      throw Error("-o: found one, expected none: --table keeps errors only");
+    if (!options.out.empty()) throw Error("-o: found one, expected none: --table keeps errors only");
     fit_to_table(options);
     return;
   }
   if (options.inputs.size() > 1) {
-    throw Error("IN: found " + std::to_string(options.inputs.size()) +
-                ", expected one, or --table FILE.md");
+    throw Error("IN: found " + std::to_string(options.inputs.size()) + ", expected one, or --table FILE.md");
   }
   fit_one(options);
 }
 
 /// An option with a fixed set of words.
 template <class T>
-CLI::Option* add_choice(CLI::App& verb, const std::string& name,
-                        const std::vector<std::pair<std::string, T>>& choices, T& value,
-                        const std::string& help) {
+CLI::Option* add_choice(CLI::App& verb, const std::string& name, const std::vector<std::pair<std::string, T>>& choices,
+                        T& value, const std::string& help) {
   std::string type, initial;
   std::vector<std::string> words;
   for (const auto& [word, meaning] : choices) {
@@ -249,38 +244,31 @@ void add_fit(CLI::App& app) {
   FitOptions& fit = options->fit;
   CLI::App* verb = app.add_subcommand("fit", "Analytic lobes that come closest to a table");
   verb->add_option("IN", options->inputs, "MERL, RGL or MBSDF table, or fit.json")->required();
-  verb->add_option("-o,--output", options->out, "File to write: the model as JSON")
-      ->type_name("FIT.json");
-  verb->add_option("--table", options->table,
-                   "File to write instead: the errors of all stages of all INs, as Markdown")
+  verb->add_option("-o,--output", options->out, "File to write: the model as JSON")->type_name("FIT.json");
+  verb->add_option("--table", options->table, "File to write instead: the errors of all stages of all INs, as Markdown")
       ->type_name("FILE.md");
   verb->add_option("--model", options->model,
                    "Lobes joined by +, see gonio synth --list; 'auto' is one to three GGX over "
                    "Lambert, the fewest that are enough")
       ->capture_default_str();
-  add_choice<bool>(*verb, "--channels", {{"shared", false}, {"separate", true}},
-                   fit.separate_channels, "Shapes per channel, or one for the three");
+  add_choice<bool>(*verb, "--channels", {{"shared", false}, {"separate", true}}, fit.separate_channels,
+                   "Shapes per channel, or one for the three");
   verb->add_option("--cutoff", options->cutoff_degrees,
                    "Pairs with a direction beyond this angle are left out of the fit")
       ->type_name("DEGREES")
       ->capture_default_str();
-  add_choice<Compression>(*verb, "--compression",
-                          {{"none", Compression::none},
-                           {"cube-root", Compression::cube_root},
-                           {"log", Compression::log}},
-                          fit.compression, "What is compared: f_r cos, its cube root or logarithm");
-  add_choice<bool>(*verb, "--weights", {{"solid-angle", false}, {"samples", true}},
-                   options->samples_count_alike,
+  add_choice<Compression>(
+      *verb, "--compression",
+      {{"none", Compression::none}, {"cube-root", Compression::cube_root}, {"log", Compression::log}}, fit.compression,
+      "What is compared: f_r cos, its cube root or logarithm");
+  add_choice<bool>(*verb, "--weights", {{"solid-angle", false}, {"samples", true}}, options->samples_count_alike,
                    "What a pair counts: its solid angles, or all alike");
-  verb->add_option(
-          "--robust", fit.robust_width,
-          "Width of a Huber loss in compressed units, 0 is least squares; 0.05 suits noise")
+  verb->add_option("--robust", fit.robust_width,
+                   "Width of a Huber loss in compressed units, 0 is least squares; 0.05 suits noise")
       ->capture_default_str();
-  verb->add_option("--starts", fit.starts, "Random starts for each number of lobes")
-      ->capture_default_str();
+  verb->add_option("--starts", fit.starts, "Random starts for each number of lobes")->capture_default_str();
   verb->add_option("--seed", fit.seed, "Seed of the starts")->capture_default_str();
-  verb->add_option("--iterations", fit.max_iterations, "At most this many for each start")
-      ->capture_default_str();
+  verb->add_option("--iterations", fit.max_iterations, "At most this many for each start")->capture_default_str();
   add_cell_policies(*verb, options->policies);
   verb->footer(
       "Cells that a reader filled were not measured: they are neither fitted nor compared.\n"

@@ -1,10 +1,12 @@
-#include <gonio/mapping/base/did_you_mean.h>
-#include <gonio/mapping/base/error.h>
-#include "tools/verbs/verbs.h"
-
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
+
+#include <CLI/CLI.hpp>
+
+#include <gonio/mapping/base/did_you_mean.h>
+#include <gonio/mapping/base/error.h>
+
+#include "tools/verbs/verbs.h"
 
 namespace gonio {
 namespace {

@@ -1,27 +1,29 @@
-#include <gonio/brdf/table/albedo.h>
-#include <gonio/mapping/base/bytes.h>
-#include <gonio/brdf/exr/stack_file.h>
-#include <gonio/mapping/stack/packed_stack.h>
-#include <gonio/brdf/table/flat_from.h>
-#include <gonio/brdf/table/measured_to.h>
-#include <gonio/fitting/model/model.h>
-#include <gonio/mapping/base/error.h>
-#include "tools/cli/failures.h"
-#include "tools/verbs/verbs.h"
-#include "tools/cli/input.h"
-#include "tools/cli/number.h"
-#include "tools/cli/options.h"
-#include "tools/cli/progress.h"
-
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <gonio/brdf/exr/stack_file.h>
+#include <gonio/brdf/table/albedo.h>
+#include <gonio/brdf/table/flat_from.h>
+#include <gonio/brdf/table/measured_to.h>
+#include <gonio/fitting/model/model.h>
+#include <gonio/mapping/base/bytes.h>
+#include <gonio/mapping/base/error.h>
+#include <gonio/mapping/stack/packed_stack.h>
+
+#include "tools/cli/failures.h"
+#include "tools/cli/input.h"
+#include "tools/cli/number.h"
+#include "tools/cli/options.h"
+#include "tools/cli/progress.h"
+#include "tools/verbs/verbs.h"
 
 namespace gonio {
 namespace {
@@ -78,8 +80,7 @@ void angles(Facts& facts, double low, double high, const std::string& remark = "
 
 std::string bytes_text(std::uintmax_t bytes) {
   char text[64];
-  std::snprintf(text, sizeof(text), "%ju bytes (%.1f KiB)", bytes,
-                static_cast<double>(bytes) / 1024);
+  std::snprintf(text, sizeof(text), "%ju bytes (%.1f KiB)", bytes, static_cast<double>(bytes) / 1024);
   return text;
 }
 
@@ -104,9 +105,9 @@ void add_albedo(Facts& facts, const Albedo& albedo) {
 
 void add_layout(Facts& facts, const MerlTable& table) {
   both(facts, "format", "MERL");
-  both(facts, "size", "90 x 90 x " + std::to_string(table.n_phi_d()) +
-                    " cells (theta_h x theta_d x phi_d)" +
-                    (table.n_phi_d() == 180 ? ", reciprocal" : ""));
+  both(facts, "size",
+       "90 x 90 x " + std::to_string(table.n_phi_d()) + " cells (theta_h x theta_d x phi_d)" +
+           (table.n_phi_d() == 180 ? ", reciprocal" : ""));
   angles(facts, 0, pi<double> / 2);
 }
 
@@ -119,14 +120,16 @@ void add_layout(Facts& facts, const RglTable& table) {
 void add_layout(Facts& facts, const MbsdfTable& table) {
   const double half_cell = pi<double> / 4 / table.n_theta_in();
   both(facts, "format", "MBSDF");
-  both(facts, "size", std::to_string(table.n_theta_in()) + " x " + std::to_string(table.n_theta_out()) +
-                    " x " + std::to_string(table.n_phi()) + " cells (theta_in x theta_out x phi)");
+  both(facts, "size",
+       std::to_string(table.n_theta_in()) + " x " + std::to_string(table.n_theta_out()) + " x " +
+           std::to_string(table.n_phi()) + " cells (theta_in x theta_out x phi)");
   angles(facts, half_cell, pi<double> / 2 - half_cell, " (cell centres)");
 }
 
 void add_measured(Facts& facts, const BrdfTable& table) {
   const double angle = measured_to(table);
-  line(facts, "measured", angle > 0 ? "to " + degrees(angle) + " degrees from the normal" : "less than half at every angle");
+  line(facts, "measured",
+       angle > 0 ? "to " + degrees(angle) + " degrees from the normal" : "less than half at every angle");
   facts.json["measured_to_degrees"] = angle / degree;
 }
 
@@ -151,7 +154,8 @@ void add_doubts(Facts& facts, const BrdfTable& table) {
     facts.json["doubts"].push_back(text);
   };
   const CellCounts& cells = table.info().cells;
-  const auto percent = static_cast<int>(std::lround(100.0 * static_cast<double>(cells.negative) / static_cast<double>(cells.total)));
+  const auto percent =
+      static_cast<int>(std::lround(100.0 * static_cast<double>(cells.negative) / static_cast<double>(cells.total)));
   if (percent >= 1) doubt(std::to_string(percent) + " % of the cells are negative");
   const auto flat = [&](const char* angle, int from) {
     constexpr int outermost = 87;  // constant beyond the last cells, as tables are
@@ -167,7 +171,7 @@ void add_doubts(Facts& facts, const BrdfTable& table) {
     const CellCounts& densities = rgl->densities();
     if (densities.negative + densities.nonfinite > 0)
       doubt("densities: " + std::to_string(densities.negative) + " negative and " +
-                         std::to_string(densities.nonfinite) + " not finite of " + std::to_string(densities.total) + ", repaired");
+            std::to_string(densities.nonfinite) + " not finite of " + std::to_string(densities.total) + ", repaired");
   }
 }
 
@@ -188,8 +192,8 @@ void describe_model(Facts& facts, const std::string& path) {
   const LobeModel model = load_model(path);
   both(facts, "name", model.name);
   both(facts, "format", "model of analytic lobes");
-  both(facts, "size", std::to_string(model.lobes.size()) + " lobes, " +
-                    std::to_string(model.specular_count()) + " of them specular");
+  both(facts, "size",
+       std::to_string(model.lobes.size()) + " lobes, " + std::to_string(model.specular_count()) + " of them specular");
   angles(facts, 0, pi<double> / 2);
   file_bytes(facts, regular_file_size(path));
   both(facts, "description", describe(model));
@@ -218,13 +222,14 @@ void describe_stack(Facts& facts, const std::string& path) {
   both(facts, "chart", to_string(file.bsdf.diagrams.chart));
   both(facts, "between", to_string(file.bsdf.interpolation));
   both(facts, "size",
-        std::to_string(diagrams.size()) + " diagrams of " +
-            range(diagrams, [](const DiagramGrid& d) { return d.phi.size(); }) + " meridians x " +
-            range(diagrams, [](const DiagramGrid& d) { return d.r.size(); }) + " parallels");
+       std::to_string(diagrams.size()) + " diagrams of " +
+           range(diagrams, [](const DiagramGrid& d) { return d.phi.size(); }) + " meridians x " +
+           range(diagrams, [](const DiagramGrid& d) { return d.r.size(); }) + " parallels");
   angles(facts, file.bsdf.diagrams.theta_i.front(), file.bsdf.diagrams.theta_i.back());
   file_bytes(facts, regular_file_size(path));
   const bool packed = file.bsdf.storage == Storage::packed16;
-  const std::size_t bytes = packed ? PackedStack(file.bsdf.diagrams).bytes() : Stack<float>(file.bsdf.diagrams, file.bsdf.interpolation).bytes();
+  const std::size_t bytes = packed ? PackedStack(file.bsdf.diagrams).bytes()
+                                   : Stack<float>(file.bsdf.diagrams, file.bsdf.interpolation).bytes();
   line(facts, "diagrams", bytes_text(bytes) + " at " + (packed ? "16" : "32") + " bits a crossing");
   facts.json["diagrams"] = {{"count", diagrams.size()}, {"bytes", bytes}, {"bits_a_crossing", packed ? 16 : 32}};
   if (file.bsdf.colour.empty()) {
@@ -233,9 +238,11 @@ void describe_stack(Facts& facts, const std::string& path) {
     return;
   }
   const Colour& colour = file.bsdf.colour;
-  line(facts, "colour", std::to_string(colour.side()) + " x " + std::to_string(colour.side() / 2) + " cells at " +
-                            std::to_string(colour.theta_i().size()) + " angles, " + bytes_text(colour.bytes()));
-  facts.json["colour"] = {{"side", colour.side()}, {"incident_angles", colour.theta_i().size()}, {"bytes", colour.bytes()}};
+  line(facts, "colour",
+       std::to_string(colour.side()) + " x " + std::to_string(colour.side() / 2) + " cells at " +
+           std::to_string(colour.theta_i().size()) + " angles, " + bytes_text(colour.bytes()));
+  facts.json["colour"] = {
+      {"side", colour.side()}, {"incident_angles", colour.theta_i().size()}, {"bytes", colour.bytes()}};
   const Bsdf sampler(file.bsdf);
   line(facts, "in memory", bytes_text(sampler.bytes()) + " as it is sampled");
   facts.json["memory_bytes"] = sampler.bytes();
@@ -303,8 +310,7 @@ void info_json(const Options& options) {
 void add_info(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* verb = app.add_subcommand("info", "What a table, a stack file or a fit holds");
-  verb->add_option("FILE", options->files, "MERL, RGL or MBSDF tables, stack files (.exr), or fit.json")
-      ->required();
+  verb->add_option("FILE", options->files, "MERL, RGL or MBSDF tables, stack files (.exr), or fit.json")->required();
   verb->add_flag("--json", options->json, "As JSON: an object, or an array of them for several files");
   add_cell_policies(*verb, options->policies);
   verb->footer(

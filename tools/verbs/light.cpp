@@ -1,21 +1,20 @@
-#include "tools/light/command.h"
-#include "tools/verbs/verbs.h"
-#include "tools/cli/options.h"
+#include <memory>
 
 #include <CLI/CLI.hpp>
-#include <memory>
+
+#include "tools/cli/options.h"
+#include "tools/light/command.h"
+#include "tools/verbs/verbs.h"
 
 namespace gonio {
 namespace {
 
 /// What every verb that reads a file accepts.
 void add_reading(CLI::App& verb, LightCommand& o) {
-  verb.add_flag("--clockwise", o.clockwise,
-                "horizontal angles run clockwise (about a third of type B files)");
-  verb.add_option(
-          "--ies-zero", o.ies_zero,
-          "C plane that the 0-degree plane of IES files is; 0 keeps their labels, as files need "
-          "that put C0 across the lamp (gonio light info says when one looks like it)")
+  verb.add_flag("--clockwise", o.clockwise, "horizontal angles run clockwise (about a third of type B files)");
+  verb.add_option("--ies-zero", o.ies_zero,
+                  "C plane that the 0-degree plane of IES files is; 0 keeps their labels, as files need "
+                  "that put C0 across the lamp (gonio light info says when one looks like it)")
       ->type_name("DEG")
       ->capture_default_str();
   verb.add_option("--tilt", o.tilt, "tilt of the lamp, for IES files with TILT factors")
@@ -27,20 +26,16 @@ void add_reading(CLI::App& verb, LightCommand& o) {
 }
 
 void add_normalisation(CLI::App& verb, LightCommand& o) {
-  verb.add_option("--normalise", o.normalise,
-                  "scale to a flux or to a largest intensity; none keeps cd as measured")
+  verb.add_option("--normalise", o.normalise, "scale to a flux or to a largest intensity; none keeps cd as measured")
       ->check(known_word({"none", "flux", "maximum"}))
       ->type_name("none|flux|maximum")
       ->capture_default_str();
-  verb.add_option("--target", o.target, "lm or cd to scale to")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  verb.add_option("--target", o.target, "lm or cd to scale to")->check(CLI::PositiveNumber)->capture_default_str();
 }
 
 void add_filter(CLI::App& verb, LightCommand& o) {
   const std::vector<std::string> names = reconstruction_names();
-  verb.add_option("--filter", o.filter,
-                  "reconstruction between the measured angles: " + CLI::detail::join(names, ", "))
+  verb.add_option("--filter", o.filter, "reconstruction between the measured angles: " + CLI::detail::join(names, ", "))
       ->check(known_word(names))
       ->type_name("FILTER")
       ->capture_default_str();
@@ -58,13 +53,11 @@ void add_light(CLI::App& app) {
     return verb;
   };
   const auto one_to_one = [&](CLI::App* verb, const char* out) {
-    verb->add_option("IN", o->in, "IES, EULUMDAT or light EXR file, known by its content")
-        ->required();
+    verb->add_option("IN", o->in, "IES, EULUMDAT or light EXR file, known by its content")->required();
     verb->add_option("OUT", o->out, out)->required();
   };
 
-  CLI::App* verb =
-      add("info", "Format, flux, efficacy, intensities, beam and field angles, zonal lumens");
+  CLI::App* verb = add("info", "Format, flux, efficacy, intensities, beam and field angles, zonal lumens");
   verb->add_option("FILE", o->files, "IES, EULUMDAT or light EXR files")->required();
   verb->footer("Example:\n  gonio light info downlight.ies street.ldt");
   verb->callback([o] { light_info(*o); });
@@ -74,14 +67,10 @@ void add_light(CLI::App& app) {
   verb->footer("Example:\n  gonio light validate *.ies *.ldt");
   verb->callback([o] { light_validate(*o); });
 
-  verb =
-      add("convert",
-          "To IES (.ies), EULUMDAT (.ldt), EXR (.exr) or a pbrt-v4 light with its image (.pbrt)");
-  one_to_one(
-      verb, "File to write; its extension is its format. A .pbrt has its image beside it: OUT.exr");
-  verb->add_option(
-          "--layout", o->layout,
-          ".exr: diagram (lossless, read by gonio), octahedral (equal-area) or latlong images")
+  verb = add("convert", "To IES (.ies), EULUMDAT (.ldt), EXR (.exr) or a pbrt-v4 light with its image (.pbrt)");
+  one_to_one(verb, "File to write; its extension is its format. A .pbrt has its image beside it: OUT.exr");
+  verb->add_option("--layout", o->layout,
+                   ".exr: diagram (lossless, read by gonio), octahedral (equal-area) or latlong images")
       ->check(known_word({"diagram", "octahedral", "latlong"}))
       ->type_name("LAYOUT")
       ->capture_default_str();
@@ -121,9 +110,7 @@ void add_light(CLI::App& app) {
 
   verb = add("sample", "Draws of the emission as CSV: direction, pdf [1/sr], weight [lm]");
   verb->add_option("IN", o->in, "IES, EULUMDAT or light EXR file")->required();
-  verb->add_option("--draws", o->draws, "number of draws")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  verb->add_option("--draws", o->draws, "number of draws")->check(CLI::PositiveNumber)->capture_default_str();
   verb->add_option("--seed", o->seed, "of the random numbers")->capture_default_str();
   verb->add_flag("--quality", "instead: relative variance and speed of this and other methods");
   add_normalisation(*verb, *o);
@@ -137,8 +124,7 @@ void add_light(CLI::App& app) {
   verb->add_option("--rows", o->rows, "steps of gamma to compare at; twice as many of C")
       ->check(CLI::Range(2, 2000))
       ->capture_default_str();
-  verb->footer(
-      "Example:\n  gonio light compare street.ldt\n  gonio light compare street.ldt street.ies");
+  verb->footer("Example:\n  gonio light compare street.ldt\n  gonio light compare street.ldt street.ies");
   verb->callback([o] { light_compare(*o); });
 }
 

@@ -1,19 +1,3 @@
-#include "tools/verbs/verbs.h"
-
-#include <gonio/mapping/base/atomic_file.h>
-#include <gonio/brdf/ndf/image/disk_image_file.h>
-#include <gonio/brdf/exr/stack_file.h>
-#include <gonio/brdf/ndf/radial_ndf.h>
-#include <gonio/brdf/ndf/image/shadowing.h>
-#include <gonio/mapping/base/error.h>
-#include "tools/cli/check_not_input.h"
-#include "tools/cli/input.h"
-#include "tools/ndf/picture.h"
-#include "tools/ndf/profile.h"
-#include "tools/cli/number.h"
-#include "tools/cli/options.h"
-#include "tools/cli/progress.h"
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -21,10 +5,27 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <gonio/brdf/exr/stack_file.h>
+#include <gonio/brdf/ndf/image/disk_image_file.h>
+#include <gonio/brdf/ndf/image/shadowing.h>
+#include <gonio/brdf/ndf/radial_ndf.h>
+#include <gonio/mapping/base/atomic_file.h>
+#include <gonio/mapping/base/error.h>
+
+#include "tools/cli/check_not_input.h"
+#include "tools/cli/input.h"
+#include "tools/cli/number.h"
+#include "tools/cli/options.h"
+#include "tools/cli/progress.h"
+#include "tools/ndf/picture.h"
+#include "tools/ndf/profile.h"
+#include "tools/verbs/verbs.h"
 
 namespace gonio {
 namespace {
@@ -76,12 +77,14 @@ nlohmann::json compare(const RadialNdf& extracted, const RadialNdf& stored, doub
   double g1 = 0, sigma = 0;
   for (int t = 0; t <= 85; ++t) {
     g1 = std::max(g1, std::abs(extracted.g1(t * degree) - stored.g1(t * degree)));
-    sigma = std::max(sigma, std::abs(stored.sigma(t * degree) - static_cast<double>(table.sigma(static_cast<float>(t * degree)))));
+    sigma = std::max(
+        sigma, std::abs(stored.sigma(t * degree) - static_cast<double>(table.sigma(static_cast<float>(t * degree)))));
   }
   json["largest_g1_difference_to_85_degrees"] = g1;
   json["sigma_of_its_ndf_against_its_sigma"] = sigma;
   for (const int t : {0, 2, 5, 10, 20, 30, 45, 60, 75})
-    json["extracted_over_stored"][std::to_string(t)] = stored.eval(t * degree) > 0 ? extracted.eval(t * degree) / stored.eval(t * degree) : 0;
+    json["extracted_over_stored"][std::to_string(t)] =
+        stored.eval(t * degree) > 0 ? extracted.eval(t * degree) / stored.eval(t * degree) : 0;
   return json;
 }
 
@@ -112,8 +115,10 @@ Source read(const Options& options) {
     }
   }();
   source.json["seconds"]["extraction"] = clock.seconds();
-  source.json["extraction"] = {{"masking", to_string(extracted.masking)}, {"measured_to_degrees", extracted.measured_to / degree},
-                               {"iterations", extracted.iterations}, {"last_relative_change", extracted.change}};
+  source.json["extraction"] = {{"masking", to_string(extracted.masking)},
+                               {"measured_to_degrees", extracted.measured_to / degree},
+                               {"iterations", extracted.iterations},
+                               {"last_relative_change", extracted.change}};
   source.json["radial"] = summary(extracted.ndf);
   source.profiles.push_back({"extracted from retro-reflection", "#222", "none", extracted.ndf});
   if (const auto* rgl = std::get_if<RglTable>(&table.data())) {
@@ -122,9 +127,10 @@ Source read(const Options& options) {
     source.json["file_ndf"] = compare(extracted.ndf, stored, area, *rgl);
     source.profiles.push_back({"the file's own ndf", "#d95f02", "none", std::move(stored)});
   }
-  source.profiles.push_back({"GGX with the extracted median", "#2166ac", "5 4", ggx(std::tan(extracted.ndf.median_theta()))});
-  source.image = rasterise(options.size, [&](const Vec3<double>& h) {
-    return extracted.ndf.eval(std::atan2(std::hypot(h.x, h.y), h.z)); });
+  source.profiles.push_back(
+      {"GGX with the extracted median", "#2166ac", "5 4", ggx(std::tan(extracted.ndf.median_theta()))});
+  source.image = rasterise(
+      options.size, [&](const Vec3<double>& h) { return extracted.ndf.eval(std::atan2(std::hypot(h.x, h.y), h.z)); });
   return source;
 }
 
@@ -147,11 +153,16 @@ void measure_direct(const Shadowing& shadowing, int size, nlohmann::json& json) 
 }
 
 void write_markdown(std::ostream& out, const nlohmann::json& j, const std::string& name) {
-  out << "# Normal distribution of " << name << "\n\ngonio " GONIO_VERSION ". " << j["size"] << " x " << j["size"] << " pixels"
-      << (j["kind"] == "image" ? ", read from an image" : ", extracted from the retro-reflection of a table (" + j["kind"].get<std::string>() + ")")
+  out << "# Normal distribution of " << name << "\n\ngonio " GONIO_VERSION ". " << j["size"] << " x " << j["size"]
+      << " pixels"
+      << (j["kind"] == "image"
+              ? ", read from an image"
+              : ", extracted from the retro-reflection of a table (" + j["kind"].get<std::string>() + ")")
       << ".\n\n![D](ndf.svg)\n\n![G1](g1.svg)\n\n";
   if (j["kind"] != "image") out << "![profiles](profile.svg)\n\n";
-  const auto row = [&](const std::string& what, const nlohmann::json& value) { out << "| " << what << " | " << number(value.get<double>(), 4) << " |\n"; };
+  const auto row = [&](const std::string& what, const nlohmann::json& value) {
+    out << "| " << what << " | " << number(value.get<double>(), 4) << " |\n";
+  };
   out << "| | |\n|---|---|\n";
   row("projected area (integral of D cos) before normalisation", j["projected_area_before"]);
   row("projected area after", j["projected_area_after"]);
@@ -190,7 +201,8 @@ void write_markdown(std::ostream& out, const nlohmann::json& j, const std::strin
 void ndf(const Options& options) {
   if (options.size < 16 || options.size > 4096)
     throw Error("--size: found " + std::to_string(options.size) + ", expected 16 to 4096");
-  check_not_input(options.out, {"ndf.exr", "g1.exr", "ndf.svg", "g1.svg", "profile.svg", "ndf.json", "ndf.md"}, {options.in});
+  check_not_input(options.out, {"ndf.exr", "g1.exr", "ndf.svg", "g1.svg", "profile.svg", "ndf.json", "ndf.md"},
+                  {options.in});
   Source source = [&] {
     const ProgressLine line("reading " + options.in);
     return read(options);
@@ -227,12 +239,15 @@ void ndf(const Options& options) {
   write_disk_picture(options.out / "ndf.svg", d, ndf_contrast(d), "Normal distribution D of " + source.name, " 1/sr");
   write_disk_picture(options.out / "g1.svg", g1, g1_contrast(g1), "Shadowing G1 of " + source.name, "");
   if (!source.profiles.empty())
-    write_ndf_profiles(options.out / "profile.svg", "Normal distribution and shadowing of " + source.name, source.profiles);
+    write_ndf_profiles(options.out / "profile.svg", "Normal distribution and shadowing of " + source.name,
+                       source.profiles);
   write_stream_atomically(options.out / "ndf.json", [&](std::ostream& out) { out << json.dump(1) << '\n'; });
   write_stream_atomically(options.out / "ndf.md", [&](std::ostream& out) { write_markdown(out, json, source.name); });
-  std::cout << "projected area " << number(json["projected_area_before"], 4) << ", normalised " << number(json["projected_area_after"], 4)
-            << "; G1 of all directions in " << number(json["seconds"]["g1"], 4) << " s\n"
-            << "written: " << (options.out / "ndf.md").string() << ", ndf.json, ndf.exr, g1.exr, ndf.svg, g1.svg" << (source.profiles.empty() ? "" : ", profile.svg") << '\n';
+  std::cout << "projected area " << number(json["projected_area_before"], 4) << ", normalised "
+            << number(json["projected_area_after"], 4) << "; G1 of all directions in "
+            << number(json["seconds"]["g1"], 4) << " s\n"
+            << "written: " << (options.out / "ndf.md").string() << ", ndf.json, ndf.exr, g1.exr, ndf.svg, g1.svg"
+            << (source.profiles.empty() ? "" : ", profile.svg") << '\n';
 }
 
 }  // namespace
@@ -241,8 +256,10 @@ void add_ndf(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* verb = app.add_subcommand("ndf", "The normal distribution of a table or an image, and its shadowing");
   verb->add_option("IN", options->in, "Table, model, or OpenEXR image of a normal distribution")->required();
-  verb->add_option("-o,--output", options->out, "Folder for ndf.exr, g1.exr, ndf.json, ndf.md and the pictures")->required();
-  verb->add_option("--size", options->size, "Pixels along a side of the images made from a table")->capture_default_str();
+  verb->add_option("-o,--output", options->out, "Folder for ndf.exr, g1.exr, ndf.json, ndf.md and the pictures")
+      ->required();
+  verb->add_option("--size", options->size, "Pixels along a side of the images made from a table")
+      ->capture_default_str();
   add_cell_policies(*verb, options->policies);
   verb->footer(
       "Images show the hemisphere flattened on its disk: x to the right, y up, the circle touches the sides.\n\n"

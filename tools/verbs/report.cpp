@@ -1,8 +1,14 @@
-#include "tools/verbs/verbs.h"
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <tuple>
+#include <vector>
 
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/mapping/base/error.h>
 #include <gonio/mapping/light/exr/light_exr.h>
+
 #include "tools/cli/check_not_input.h"
 #include "tools/cli/check_writable.h"
 #include "tools/cli/failures.h"
@@ -14,13 +20,7 @@
 #include "tools/report/provenance.h"
 #include "tools/report/write_report.h"
 #include "tools/stability/summary.h"
-
-#include <filesystem>
-#include <iostream>
-#include <memory>
-#include <string>
-#include <tuple>
-#include <vector>
+#include "tools/verbs/verbs.h"
 
 namespace gonio {
 
@@ -37,10 +37,18 @@ struct Options {
 LightReport measure_light(const std::filesystem::path& path) {
   Problems ignored;
   const Luminaire light = load_any_light(path, {}, ignored);
-  return {path.stem().string(), path.string(), light.format, std::filesystem::file_size(path), sha256_of(path), flux(light.diagram), emission_quality(light.diagram)};
+  return {path.stem().string(),
+          path.string(),
+          light.format,
+          std::filesystem::file_size(path),
+          sha256_of(path),
+          flux(light.diagram),
+          emission_quality(light.diagram)};
 }
 
-std::string of_all(std::size_t k, std::size_t count) { return " (" + std::to_string(k + 1) + " of " + std::to_string(count) + ")"; }
+std::string of_all(std::size_t k, std::size_t count) {
+  return " (" + std::to_string(k + 1) + " of " + std::to_string(count) + ")";
+}
 
 /// Those that load: measuring takes long, and is not begun before all are known.
 std::vector<std::filesystem::path> usable_inputs(const Options& options, Failures& failures) {
@@ -87,7 +95,8 @@ void check_outputs(const Options& options) {
 void make_folder(const std::filesystem::path& directory) {
   std::error_code failed;
   std::filesystem::create_directories(directory, failed);
-  if (failed) throw Error(directory.string() + ": cannot be made: " + failed.message() + ", expected a folder to write to");
+  if (failed)
+    throw Error(directory.string() + ": cannot be made: " + failed.message() + ", expected a folder to write to");
   check_writable(directory / "report.html");
 }
 
@@ -122,7 +131,9 @@ void report_verb(const Options& options, const std::vector<std::string>& argumen
 void add_report(CLI::App& app, const std::vector<std::string>& arguments) {
   auto options = std::make_shared<Options>();
   CLI::App* verb = app.add_subcommand("report", "Measure how well materials are sampled, by every method");
-  verb->add_option("IN", options->inputs, "Tables (MERL, RGL, MBSDF), stack files, fit.json, or luminaires (IES, EULUMDAT, light EXR)")->required();
+  verb->add_option("IN", options->inputs,
+                   "Tables (MERL, RGL, MBSDF), stack files, fit.json, or luminaires (IES, EULUMDAT, light EXR)")
+      ->required();
   verb->add_option("-o,--output", options->directory, "Folder for report.html, report.md and report.json")->required();
   verb->add_option("--stability", options->stability, "A stability.json of gonio stability, to be shown as well");
   verb->add_flag("--merge", options->merge, "IN are report.json files: writes them as one report, without measuring");
@@ -133,13 +144,17 @@ void add_report(CLI::App& app, const std::vector<std::string>& arguments) {
           },
           "At most M meridians and N parallels in a diagram")
       ->type_name("MxN")
-      ->default_str(std::to_string(options->report.stack.meridians) + "x" + std::to_string(options->report.stack.parallels));
+      ->default_str(std::to_string(options->report.stack.meridians) + "x" +
+                    std::to_string(options->report.stack.parallels));
   add_stack_options(*verb, options->report.stack);
   add_cell_policies(*verb, options->report.policies);
   verb->footer(
-      "Angles 2, 10, 30, 50, 70, 80 and 85 degrees. Methods: uniform, cosine; rgl, the own warps of RGL files; nearest, mixture and\n"
-      "displacement, one stack of the size given above; blend, the default stack of a table; compact, the smallest compact BSDF of\n"
-      "relative variance 0.01; lobes1, lobes2 and lobes3, fitted GGX lobes; and displacement_small, a stack of about the lobes' bytes.\n"
+      "Angles 2, 10, 30, 50, 70, 80 and 85 degrees. Methods: uniform, cosine; rgl, the own warps of RGL files; "
+      "nearest, mixture and\n"
+      "displacement, one stack of the size given above; blend, the default stack of a table; compact, the smallest "
+      "compact BSDF of\n"
+      "relative variance 0.01; lobes1, lobes2 and lobes3, fitted GGX lobes; and displacement_small, a stack of about "
+      "the lobes' bytes.\n"
       "A stack file is measured as it is. Luminaires: relative variance and speed of emission.\n\n"
       "Examples:\n"
       "  gonio report chrome.binary -o report\n"

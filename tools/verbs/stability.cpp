@@ -1,14 +1,3 @@
-#include "tools/cli/number.h"
-#include "tools/verbs/verbs.h"
-
-#include <gonio/brdf/proof/statistics/chi_square.h>
-#include <gonio/mapping/base/atomic_file.h>
-#include <gonio/mapping/base/error.h>
-#include "tools/cli/progress.h"
-#include "tools/stability/figures.h"
-#include "tools/stability/measure_row.h"
-#include "tools/stability/summary.h"
-
 #include <algorithm>
 #include <atomic>
 #include <exception>
@@ -17,10 +6,22 @@
 #include <iomanip>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
 #include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <gonio/brdf/proof/statistics/chi_square.h>
+#include <gonio/mapping/base/atomic_file.h>
+#include <gonio/mapping/base/error.h>
+
+#include "tools/cli/number.h"
+#include "tools/cli/progress.h"
+#include "tools/stability/figures.h"
+#include "tools/stability/measure_row.h"
+#include "tools/stability/summary.h"
+#include "tools/verbs/verbs.h"
 
 namespace gonio {
 namespace {
@@ -74,28 +75,35 @@ nlohmann::json to_json(const std::vector<StabilityRow>& rows) {
 }
 
 void write_markdown(std::ostream& out, const std::vector<StabilityRow>& rows) {
-  out << "# Where methods fail\n\ngonio " GONIO_VERSION ". Textbook formulas in float beside the library's own (`gonio-`), judged in long double.\n\n"
-         "A variant fails on an input if its largest error exceeds the bound in the table below, if an estimate with its draws is off by more\n"
-         "than 5 standard errors (and 0.03 %, what the quadrature may err), or if the draws can be told from the pdf claimed: a draw\n"
+  out << "# Where methods fail\n\ngonio " GONIO_VERSION
+         ". Textbook formulas in float beside the library's own (`gonio-`), judged in long double.\n\n"
+         "A variant fails on an input if its largest error exceeds the bound in the table below, if an estimate with "
+         "its draws is off by more\n"
+         "than 5 standard errors (and 0.03 %, what the quadrature may err), or if the draws can be told from the pdf "
+         "claimed: a draw\n"
          "outside the support, or chi-square p below "
       << number(proof::sidak(0.01, static_cast<int>(rows.size())), 2)
-      << " (0.01 for all rows together, Sidak). An error of 8.4e+06 ulp is an answer\nwithout a correct digit.\n\n![chart](stability.svg)\n\n";
+      << " (0.01 for all rows together, Sidak). An error of 8.4e+06 ulp is an answer\nwithout a correct "
+         "digit.\n\n![chart](stability.svg)\n\n";
   write_stability_summary(out, to_json(rows));
-  out << "\n## All rows\n\n| input | variant | error [ulp] | bound | bias | standard error | chi2 p | fails by |\n|---|---|---|---|---|---|---|---|\n";
+  out << "\n## All rows\n\n| input | variant | error [ulp] | bound | bias | standard error | chi2 p | fails by "
+         "|\n|---|---|---|---|---|---|---|---|\n";
   for (const StabilityRow& r : rows) {
     std::string failed;
     if (r.error_fails) failed += "error ";
     if (r.bias_fails) failed += "bias ";
     if (r.chi2_fails) failed += "chi2 ";
-    out << "| " << r.input << " | " << r.variant << " | " << number(r.max_error, 2) << " | " << number(r.bound, 2) << " | " << number(100 * r.bias, 2) << " % | "
-        << number(100 * r.standard_error, 2) << " % | " << number(r.chi2_p, 2) << " | " << failed << "|\n";
+    out << "| " << r.input << " | " << r.variant << " | " << number(r.max_error, 2) << " | " << number(r.bound, 2)
+        << " | " << number(100 * r.bias, 2) << " % | " << number(100 * r.standard_error, 2) << " % | "
+        << number(r.chi2_p, 2) << " | " << failed << "|\n";
   }
   out << "\n## Inputs\n\n";
   for (const StabilityInput& input : stability_inputs()) out << "- " << input.name << ": " << input.reason << "\n";
   out << "\n## The error of reading theta as r\n\n| equal intervals | absolute | relative |\n|---|---|---|\n";
   for (const int intervals : {1, 10}) {
     const WorstReading w = worst_reading_error(intervals);
-    out << "| " << intervals << " | " << number(100 * w.absolute, 2) << " % | " << std::setprecision(3) << 100 * w.relative << " % |\n";
+    out << "| " << intervals << " | " << number(100 * w.absolute, 2) << " % | " << std::setprecision(3)
+        << 100 * w.relative << " % |\n";
   }
   out << "\n![Fig. 3](figure3.svg)\n\n![Fig. 6](figure6.svg)\n";
 }
@@ -116,7 +124,8 @@ void stability(const std::filesystem::path& directory) {
   write_figure_3(directory / "figure3.svg");
   write_figure_6(directory / "figure6.svg");
   write_stability_summary(std::cout, json);
-  std::cout << "written: " << (directory / "stability.md").string() << ", stability.json, stability.svg, figure3.svg, figure6.svg\n";
+  std::cout << "written: " << (directory / "stability.md").string()
+            << ", stability.json, stability.svg, figure3.svg, figure6.svg\n";
 }
 
 }  // namespace

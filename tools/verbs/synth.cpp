@@ -1,17 +1,18 @@
-#include <gonio/fitting/model/synth.h>
-#include <gonio/mapping/base/atomic_file.h>
-#include <gonio/mapping/base/error.h>
-#include "tools/cli/check_not_input.h"
-#include "tools/cli/options.h"
-#include "tools/cli/progress.h"
-#include "tools/verbs/verbs.h"
-#include "tools/cli/written.h"
-
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
+
+#include <gonio/fitting/model/synth.h>
+#include <gonio/mapping/base/atomic_file.h>
+#include <gonio/mapping/base/error.h>
+
+#include "tools/cli/check_not_input.h"
+#include "tools/cli/options.h"
+#include "tools/cli/progress.h"
+#include "tools/cli/written.h"
+#include "tools/verbs/verbs.h"
 
 namespace gonio {
 namespace {
@@ -24,8 +25,7 @@ struct Options {
 };
 
 void print_parameter(const Parameter& parameter) {
-  std::printf("    %-10s %-8g %g to %g", parameter.name, parameter.initial, parameter.min,
-              parameter.max);
+  std::printf("    %-10s %-8g %g to %g", parameter.name, parameter.initial, parameter.min, parameter.max);
   const std::string unit = parameter.unit;
   std::printf("%s\n", unit == "1" ? "" : (" (" + unit + ")").c_str());
 }
@@ -36,20 +36,17 @@ void print_models() {
     const LobeInfo& info = lobe_info(kind);
     std::printf("  %s: %s\n", info.id, info.source);
     for (const Parameter& parameter : info.shape) print_parameter(parameter);
-    for (const Parameter& parameter : color_parameters(kind, Fresnel::schlick))
-      print_parameter(parameter);
+    for (const Parameter& parameter : color_parameters(kind, Fresnel::schlick)) print_parameter(parameter);
   }
   std::printf("A specular lobe with one of these is a conductor, and has no F0 and F90:\n");
-  for (const Parameter& parameter : color_parameters(LobeKind::ggx, Fresnel::conductor))
-    print_parameter(parameter);
+  for (const Parameter& parameter : color_parameters(LobeKind::ggx, Fresnel::conductor)) print_parameter(parameter);
   std::printf("default is %s\n", describe(parse_model("default")).c_str());
 }
 
 /// A description, or the name of a model file.
 LobeModel model_of(const std::string& text) {
   std::error_code none;
-  const bool file = std::filesystem::path(text).extension() == ".json" ||
-                    std::filesystem::is_regular_file(text, none);
+  const bool file = std::filesystem::path(text).extension() == ".json" || std::filesystem::is_regular_file(text, none);
   return file ? load_model(text) : parse_model(text);
 }
 
@@ -68,8 +65,7 @@ void synth(const CLI::App& verb, Options& options) {
     return;
   }
   if (options.model.empty()) throw Error("MODEL: found none, expected one; see gonio synth --list");
-  if (options.out.empty())
-    throw Error("-o: found no output file, expected a .binary, .mbsdf or .json file");
+  if (options.out.empty()) throw Error("-o: found no output file, expected a .binary, .mbsdf or .json file");
   const std::string extension = checked_extension(options.out, {".binary", ".mbsdf", ".json"});
   check_not_input(options.out, {options.model});
   if (extension == ".json") {
@@ -81,8 +77,7 @@ void synth(const CLI::App& verb, Options& options) {
     throw Error("--noise: found " + std::to_string(sigma) + ", expected a number from 0");
   }
   if (!(limit > 0 && limit <= 90)) {
-    throw Error("--measured-to: found " + std::to_string(limit) +
-                ", expected more than 0, up to 90");
+    throw Error("--measured-to: found " + std::to_string(limit) + ", expected more than 0, up to 90");
   }
   options.synth.measured_to = limit * pi<double> / 180;
   const LobeModel model = model_of(options.model);
@@ -100,14 +95,13 @@ void synth(const CLI::App& verb, Options& options) {
 void add_synth(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* verb = app.add_subcommand("synth", "A table computed from an analytic model, or the model as a file");
-  verb->add_option(
-      "MODEL", options->model,
-      "'default', lobes joined by + with their parameters (see --list), or a fit.json");
-  verb->add_option("-o,--output", options->out, "File to write: MERL (.binary), MBSDF (.mbsdf), or the model itself (.json)")
+  verb->add_option("MODEL", options->model,
+                   "'default', lobes joined by + with their parameters (see --list), or a fit.json");
+  verb->add_option("-o,--output", options->out,
+                   "File to write: MERL (.binary), MBSDF (.mbsdf), or the model itself (.json)")
       ->type_name("OUT");
   verb->add_flag("--list", options->list, "Lists lobes and parameters");
-  verb->add_option("--noise", options->synth.noise_sigma,
-                   "Standard deviation of the noise that multiplies each value")
+  verb->add_option("--noise", options->synth.noise_sigma, "Standard deviation of the noise that multiplies each value")
       ->capture_default_str();
   verb->add_option("--seed", options->synth.seed, "Seed of the noise")->capture_default_str();
   verb->add_option("--measured-to", options->measured_to_degrees,

@@ -1,30 +1,31 @@
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/brdf/formats/sniff.h>
 #include <gonio/brdf/table/albedo.h>
 #include <gonio/brdf/table/validate.h>
 #include <gonio/fitting/model/model.h>
 #include <gonio/mapping/base/error.h>
+
 #include "tools/cli/input.h"
 #include "tools/cli/number.h"
 #include "tools/cli/progress.h"
 #include "tools/verbs/verbs.h"
-
-#include <algorithm>
-#include <cctype>
-#include <cmath>
-#include <cstdio>
-#include <glm/vec3.hpp>
-#include <memory>
-#include <string>
-#include <vector>
 
 namespace gonio {
 namespace {
 
 /// A name that promises one format over content of another is an error even though gonio reads the
 /// file: other programs go by the name.
-void check_name(const std::filesystem::path& path, const std::string& expected,
-                std::vector<Problem>& problems) {
+void check_name(const std::filesystem::path& path, const std::string& expected, std::vector<Problem>& problems) {
   std::string found = path.extension().string();
   for (char& c : found) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   const bool promises =
@@ -69,23 +70,19 @@ std::vector<Problem> check_stack(const std::filesystem::path& path) {
   }
   for (std::size_t k = 0; k < file.bsdf.diagrams.diagrams.size(); ++k) {
     const DiagramGrid& grid = file.bsdf.diagrams.diagrams[k];
-    const auto peak =
-        std::max_element(grid.density.begin(), grid.density.end()) - grid.density.begin();
+    const auto peak = std::max_element(grid.density.begin(), grid.density.end()) - grid.density.begin();
     const double integral = grid.density[peak] / Diagram<double>(grid).grid().density[peak];
     if (std::abs(integral - 1) > 1e-3) {
-      problems.push_back({"diagram " + std::to_string(k),
-                          "densities with integral " + number(integral, 4),
+      problems.push_back({"diagram " + std::to_string(k), "densities with integral " + number(integral, 4),
                           "1 over the hemisphere (they are scaled on loading)", false});
     }
   }
   const double last = file.bsdf.diagrams.theta_i.back() * 180 / pi<double>;
   if (last < 80) {
-    problems.push_back(
-        {"theta_i", "a last diagram at " + number(last, 4) + " degrees", "80 or more", false});
+    problems.push_back({"theta_i", "a last diagram at " + number(last, 4) + " degrees", "80 or more", false});
   }
   if (file.bsdf.colour.empty()) {
-    problems.push_back(
-        {"colour", "none", "a part colour, without which sampling needs the table", false});
+    problems.push_back({"colour", "none", "a part colour, without which sampling needs the table", false});
   } else {
     check_albedo(file.bsdf.colour, problems);
   }
@@ -98,8 +95,7 @@ std::vector<Problem> check_model(const std::filesystem::path& path) {
     const BrdfTable table = load_input(path);
     double largest = 0, where = 0;
     for (double degrees = 5; degrees <= 85; degrees += 10) {
-      const glm::vec3 albedo =
-          directional_albedo(table, static_cast<float>(degrees * pi<double> / 180));
+      const glm::vec3 albedo = directional_albedo(table, static_cast<float>(degrees * pi<double> / 180));
       for (int c = 0; c < 3; ++c) {
         if (static_cast<double>(albedo[c]) <= largest) continue;
         largest = static_cast<double>(albedo[c]);
@@ -155,8 +151,7 @@ bool report(const std::string& path) {
   bool usable = true;
   for (const Problem& problem : problems) {
     usable = usable && !problem.fatal;
-    std::printf("%s: %s: %s\n", path.c_str(), problem.fatal ? "error" : "warning",
-                to_string(problem).c_str());
+    std::printf("%s: %s: %s\n", path.c_str(), problem.fatal ? "error" : "warning", to_string(problem).c_str());
   }
   if (problems.empty()) std::printf("%s: ok\n", path.c_str());
   return usable;

@@ -13,14 +13,17 @@ namespace gonio {
 namespace HWY_NAMESPACE {
 inline namespace GONIO_LANES {
 
-/// Of the eight cells from `first` on: a of the way to the next column, b to the next row, c to the next layer. Four floats.
+/// Of the eight cells from `first` on: a of the way to the next column, b to the next row, c to the next layer. Four
+/// floats.
 HWY_INLINE void mix_cells(const BatchColour& colour, const float* first, float a, float b, float c, float* to) {
   const hn::CappedTag<float, 4> d4;  // one triple, where vectors are that long
   const std::ptrdiff_t below = 4 * colour.next_row, behind = 4 * colour.next_layer;
-  const auto mixed = [](auto tag, float t, auto p, auto q) GONIO_INLINED { return hn::MulAdd(hn::Set(tag, t), hn::Sub(q, p), p); };
+  const auto mixed = [](auto tag, float t, auto p, auto q)
+                         GONIO_INLINED { return hn::MulAdd(hn::Set(tag, t), hn::Sub(q, p), p); };
   // Between rows and layers, from `channel` of the cell on.
   const auto column = [&](auto tag, std::size_t channel) GONIO_INLINED {
-    const auto row = [&](const float* x) GONIO_INLINED { return mixed(tag, b, hn::LoadU(tag, x), hn::LoadU(tag, x + below)); };
+    const auto row = [&](const float* x)
+                         GONIO_INLINED { return mixed(tag, b, hn::LoadU(tag, x), hn::LoadU(tag, x + below)); };
     return mixed(tag, c, row(first + channel), row(first + channel + behind));
   };
 #if HWY_TARGET <= HWY_AVX2

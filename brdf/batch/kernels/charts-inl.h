@@ -1,4 +1,5 @@
-// The square, the hemisphere and the half-vector chart on vectors, once per instruction set: included by the kernels' own files alone.
+// The square, the hemisphere and the half-vector chart on vectors, once per instruction set: included by the kernels'
+// own files alone.
 #if defined(GONIO_BATCH_CHARTS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef GONIO_BATCH_CHARTS_INL_H
 #undef GONIO_BATCH_CHARTS_INL_H
@@ -53,7 +54,7 @@ HWY_INLINE Square diagram_to_square(V u, V r2, M mirrored, bool half) {
   const V radius = hn::Sqrt(hn::Min(r2, set(1)));
   // A triangle wave of period 1 and slope 8, cut at one: cosine and sine of the square.
   const V octant = hn::Mul(set(8), turn);
-  const V from4 = hn::Abs(hn::Sub(octant, set(4)));                        // 4 ... 0 ... 4
+  const V from4 = hn::Abs(hn::Sub(octant, set(4)));                       // 4 ... 0 ... 4
   const V x = hn::Min(hn::Max(hn::Sub(from4, set(2)), set(-1)), set(1));  // 1 at 0, -1 at 4
   const V from6 = hn::Abs(hn::Sub(octant, set(6)));
   const V from2 = hn::Sub(set(2), hn::Abs(hn::Sub(octant, set(2))));
@@ -119,10 +120,10 @@ struct HalfChart {
     const V below = hn::Mul(hn::Mul(scale, h.m), hn::Mul(rest, inverse_d));
     const V cos_h = hn::Add(h.cos_max, below);
     const V sin_h = hn::Sqrt(hn::Mul(hn::Mul(q, inverse_d), hn::Add(one, cos_h)));
-    const V sin_left = hn::Div(hn::Mul(below, hn::Add(cos_h, h.cos_max)),
-                               hn::MulAdd(h.sin_max, cos_h, hn::Mul(h.cos_max, sin_h)));
-    const V z = hn::Mul(hn::Mul(hn::Add(h.norm, h.norm), sin_left),
-                        hn::MulAdd(h.cos_max, cos_h, hn::Mul(h.sin_max, sin_h)));
+    const V sin_left =
+        hn::Div(hn::Mul(below, hn::Add(cos_h, h.cos_max)), hn::MulAdd(h.sin_max, cos_h, hn::Mul(h.cos_max, sin_h)));
+    const V z =
+        hn::Mul(hn::Mul(hn::Add(h.norm, h.norm), sin_left), hn::MulAdd(h.cos_max, cos_h, hn::Mul(h.sin_max, sin_h)));
     const V cos_d = hn::Div(hn::Add(cos, z), hn::Add(cos_h, cos_h));
     const V along = hn::Mul(hn::Add(cos_d, cos_d), sin_h);
     return {{hn::MulSub(along, phi.cos, sin), hn::Mul(along, phi.sin), z},
@@ -140,9 +141,9 @@ struct HalfChart {
     const V sin2 = hn::Min(hn::Div(wo.z, h.norm), one), inverse = hn::Div(one, length), cos_h = hn::Mul(z, inverse);
     const V root = hn::Sqrt(hn::Mul(hn::Sub(one, sin2), hn::Add(one, sin2)));
     const V sin_left = hn::Div(sin2, hn::Sqrt(hn::MulAdd(set(2), root, set(2))));
-    const V near = hn::Div(
-        hn::Mul(sin_left, hn::MulAdd(h.sin_max, cos_h, hn::Mul(h.cos_max, hn::Mul(across, inverse)))),
-        hn::Add(cos_h, h.cos_max));
+    const V near =
+        hn::Div(hn::Mul(sin_left, hn::MulAdd(h.sin_max, cos_h, hn::Mul(h.cos_max, hn::Mul(across, inverse)))),
+                hn::Add(cos_h, h.cos_max));
     const V below = hn::IfThenElse(hn::Gt(hn::Add(rise, rise), h.m), near, hn::Sub(h.m, rise));
     const V steep = hn::Mul(scale, rise);
     const V outside = hn::Max(hn::Div(below, h.m), zero()), inverse_sum = hn::Div(one, hn::Add(outside, steep));

@@ -16,24 +16,28 @@ namespace gonio {
 namespace HWY_NAMESPACE {
 inline namespace GONIO_LANES {
 
-// A draw goes in stages over all elements of a block, arithmetic on vectors and look-ups element by element in turn: within a
-// stage nothing waits for anything, and what one stage has stored is there when the next one loads it.
+// A draw goes in stages over all elements of a block, arithmetic on vectors and look-ups element by element in turn:
+// within a stage nothing waits for anything, and what one stage has stored is there when the next one loads it.
 
-/// The look-ups of the maps of Diagram. An element is one diagram, or two that are blended, and its two uniform numbers.
+/// The look-ups of the maps of Diagram. An element is one diagram, or two that are blended, and its two uniform
+/// numbers.
 template <std::size_t size>
 struct MapBlock {
   using Floats = float[size];
   HWY_ALIGN Floats target, below;  // mass before the position that is searched, before its cell
-  HWY_ALIGN float cell[4 * size];  // phi, mass, phi, mass of the meridians, then r, r, density, density of the parallels about it
+  HWY_ALIGN float
+      cell[4 * size];  // phi, mass, phi, mass of the meridians, then r, r, density, density of the parallels about it
   HWY_ALIGN Floats a, b, phi, mass, r, gap, pdf;  // b = 1 - a
-  HWY_ALIGN int block[size];       // of the diagram, the first of two: its place in layout.values
+  HWY_ALIGN int block[size];                      // of the diagram, the first of two: its place in layout.values
   int group[size], meridian[size];
 };
 
-// A search has two steps, the group and the cell, in loops of their own: what the second one reads is on its way by then.
+// A search has two steps, the group and the cell, in loops of their own: what the second one reads is on its way by
+// then.
 
 template <std::size_t size, class SourceOf>
-HWY_INLINE void find_meridian_groups(const BatchLayout& layout, std::size_t count, MapBlock<size>& map, const SourceOf& source_of) {
+HWY_INLINE void find_meridian_groups(const BatchLayout& layout, std::size_t count, MapBlock<size>& map,
+                                     const SourceOf& source_of) {
   const std::ptrdiff_t before = layout.before_meridians, groups = layout.meridian_groups, across = layout.across;
   for (std::size_t k = 0; k < count; ++k) {
     const auto source = source_of(k);
@@ -44,9 +48,11 @@ HWY_INLINE void find_meridian_groups(const BatchLayout& layout, std::size_t coun
 }
 
 template <std::size_t size, class SourceOf>
-HWY_INLINE void find_meridians(const BatchLayout& layout, std::size_t count, MapBlock<size>& map, const SourceOf& source_of) {
+HWY_INLINE void find_meridians(const BatchLayout& layout, std::size_t count, MapBlock<size>& map,
+                               const SourceOf& source_of) {
   constexpr std::ptrdiff_t cells = BatchLayout::group;
-  const std::ptrdiff_t groups = layout.meridian_groups, before = layout.before_parallels, before_row = layout.before_row;
+  const std::ptrdiff_t groups = layout.meridian_groups, before = layout.before_parallels,
+                       before_row = layout.before_row;
   for (std::size_t k = 0; k < count; ++k) {
     const auto source = source_of(k);
     const std::ptrdiff_t g = map.group[k];
@@ -59,9 +65,11 @@ HWY_INLINE void find_meridians(const BatchLayout& layout, std::size_t count, Map
 }
 
 template <std::size_t size, class SourceOf>
-HWY_INLINE void find_parallel_groups(const BatchLayout& layout, std::size_t count, MapBlock<size>& map, const SourceOf& source_of) {
+HWY_INLINE void find_parallel_groups(const BatchLayout& layout, std::size_t count, MapBlock<size>& map,
+                                     const SourceOf& source_of) {
   constexpr std::ptrdiff_t floats = BatchLayout::parallel_group;
-  const std::ptrdiff_t before = layout.before_parallels, before_row = layout.before_row, groups = layout.parallel_groups, along = layout.along;
+  const std::ptrdiff_t before = layout.before_parallels, before_row = layout.before_row,
+                       groups = layout.parallel_groups, along = layout.along;
   for (std::size_t k = 0; k < count; ++k) {
     const auto source = source_of(k);
     const std::ptrdiff_t i = map.meridian[k];
@@ -73,7 +81,8 @@ HWY_INLINE void find_parallel_groups(const BatchLayout& layout, std::size_t coun
 }
 
 template <std::size_t size, class SourceOf>
-HWY_INLINE void find_parallels(const BatchLayout& layout, std::size_t count, MapBlock<size>& map, const SourceOf& source_of) {
+HWY_INLINE void find_parallels(const BatchLayout& layout, std::size_t count, MapBlock<size>& map,
+                               const SourceOf& source_of) {
   constexpr std::ptrdiff_t cells = BatchLayout::group, floats = BatchLayout::parallel_group;
   const std::ptrdiff_t groups = layout.parallel_groups, along = layout.along, r = layout.r;
   for (std::size_t k = 0; k < count; ++k) {
@@ -87,11 +96,12 @@ HWY_INLINE void find_parallels(const BatchLayout& layout, std::size_t count, Map
   }
 }
 
-/// Diagram::meridian_at() and parallel_at() of `count` elements with their `block` and `target`, the mass before the meridian;
-/// v(k) is the other uniform number of the elements from k on, rest(k) is 1 - v(k). Draws are at least `at_horizon` from there.
+/// Diagram::meridian_at() and parallel_at() of `count` elements with their `block` and `target`, the mass before the
+/// meridian; v(k) is the other uniform number of the elements from k on, rest(k) is 1 - v(k). Draws are at least
+/// `at_horizon` from there.
 template <std::size_t size, class SourceOf, class V0, class V1>
-HWY_INLINE void draw_map(const BatchLayout& layout, std::size_t count, MapBlock<size>& map, const SourceOf& source_of, const V0& v,
-                         const V1& rest, float at_horizon) {
+HWY_INLINE void draw_map(const BatchLayout& layout, std::size_t count, MapBlock<size>& map, const SourceOf& source_of,
+                         const V0& v, const V1& rest, float at_horizon) {
   const D d;
   find_meridian_groups(layout, count, map, source_of);
   find_meridians(layout, count, map, source_of);
@@ -121,7 +131,8 @@ HWY_INLINE void draw_map(const BatchLayout& layout, std::size_t count, MapBlock<
 struct DiskBlock {
   using Floats = float[block_size];
   HWY_ALIGN int block[block_size];  // of the diagram before the incident angle: its place in layout.values()
-  HWY_ALIGN Floats target, v, rest;  // the uniform numbers of the diagram, the first one times its mass, and 1 less the second
+  HWY_ALIGN Floats target, v,
+      rest;  // the uniform numbers of the diagram, the first one times its mass, and 1 less the second
   HWY_ALIGN Floats r, gap, phi, pdf;
 };
 
@@ -131,14 +142,17 @@ HWY_INLINE void draw_single(const BatchLayout& layout, std::size_t count, const 
   const D d;
   MapBlock<block_size> map;
   std::copy_n(disk.block, count, map.block), std::copy_n(disk.target, count, map.target);
-  draw_map(layout, count, map,
-           [&](std::size_t k) GONIO_INLINED {
-             const float* block = layout.values() + map.block[k];
-             if constexpr (blended) return TwoSources{block, layout.stride, 1 - alpha[k], alpha[k]};
-             else return OneSource{block};
-           },
-           [&](std::size_t k) GONIO_INLINED { return hn::Load(d, disk.v + k); },
-           [&](std::size_t k) GONIO_INLINED { return hn::Load(d, disk.rest + k); }, rim);
+  draw_map(
+      layout, count, map,
+      [&](std::size_t k) GONIO_INLINED {
+        const float* block = layout.values() + map.block[k];
+        if constexpr (blended)
+          return TwoSources{block, layout.stride, 1 - alpha[k], alpha[k]};
+        else
+          return OneSource{block};
+      },
+      [&](std::size_t k) GONIO_INLINED { return hn::Load(d, disk.v + k); },
+      [&](std::size_t k) GONIO_INLINED { return hn::Load(d, disk.rest + k); }, rim);
   std::copy_n(map.r, count, disk.r), std::copy_n(map.gap, count, disk.gap);
   std::copy_n(map.phi, count, disk.phi), std::copy_n(map.pdf, count, disk.pdf);
 }
@@ -148,7 +162,8 @@ static HWY_NOINLINE HWY_MAYBE_UNUSED V displaced_pdf(const BatchLayout& layout, 
   return DisplacementLanes(layout, block, alpha).pdf(r, gap, phi);
 }
 
-/// Displacement::sample(). Both diagrams of all elements are drawn as one block, those before the incident angles first.
+/// Displacement::sample(). Both diagrams of all elements are drawn as one block, those before the incident angles
+/// first.
 HWY_INLINE void draw_displacement(const BatchLayout& layout, std::size_t count, const float* alpha, DiskBlock& disk) {
   const D d;
   const DI di;
@@ -161,16 +176,19 @@ HWY_INLINE void draw_displacement(const BatchLayout& layout, std::size_t count, 
     hn::Store(block, di, map.block + k), hn::Store(hn::Add(block, set_int(layout.stride)), di, map.block + count + k);
     hn::Store(hn::Max(hn::Load(d, disk.v + k), least), d, disk.v + k);
   }
-  const auto shared = [&](const float* x, std::size_t k) GONIO_INLINED { return hn::Load(d, x + (k < count ? k : k - count)); };
-  draw_map(layout, 2 * count, map, [&](std::size_t k) GONIO_INLINED { return OneSource{layout.values() + map.block[k]}; },
-           [&](std::size_t k) GONIO_INLINED { return shared(disk.v, k); },
-           [&](std::size_t k) GONIO_INLINED { return shared(disk.rest, k); }, 0);
+  const auto shared = [&](const float* x, std::size_t k)
+                          GONIO_INLINED { return hn::Load(d, x + (k < count ? k : k - count)); };
+  draw_map(
+      layout, 2 * count, map, [&](std::size_t k) GONIO_INLINED { return OneSource{layout.values() + map.block[k]}; },
+      [&](std::size_t k) GONIO_INLINED { return shared(disk.v, k); },
+      [&](std::size_t k) GONIO_INLINED { return shared(disk.rest, k); }, 0);
   for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
     const V w1 = hn::Load(d, alpha + k), w0 = hn::Sub(set(1), w1);
     const auto first = [&](const float* x) GONIO_INLINED { return hn::Load(d, x + k); };
     const auto second = [&](const float* x) GONIO_INLINED { return hn::Load(d, x + count + k); };
     const auto between = [&](V a, V b) GONIO_INLINED { return hn::MulAdd(w0, a, hn::Mul(w1, b)); };
-    const Displaced at0{first(map.mass), first(map.r), first(map.pdf)}, at1{second(map.mass), second(map.r), second(map.pdf)};
+    const Displaced at0{first(map.mass), first(map.r), first(map.pdf)},
+        at1{second(map.mass), second(map.r), second(map.pdf)};
     V r = between(at0.r, at1.r), gap = between(first(map.gap), second(map.gap));
     const V phi = between(first(map.phi), second(map.phi));
     V pdf = displaced_density(w0, w1, whole, at0, at1, r);
@@ -179,13 +197,14 @@ HWY_INLINE void draw_displacement(const BatchLayout& layout, std::size_t count, 
       r = hn::Min(r, set(1 - rim)), gap = hn::Max(gap, set(rim));
       pdf = hn::IfThenElse(beyond, displaced_pdf(layout, hn::Load(di, disk.block + k), w1, r, gap, phi), pdf);
     }
-    hn::Store(r, d, disk.r + k), hn::Store(gap, d, disk.gap + k), hn::Store(phi, d, disk.phi + k), hn::Store(pdf, d, disk.pdf + k);
+    hn::Store(r, d, disk.r + k), hn::Store(gap, d, disk.gap + k), hn::Store(phi, d, disk.phi + k),
+        hn::Store(pdf, d, disk.pdf + k);
   }
 }
 
 /// Stack::sample() of `count` elements, at most a block of whole vectors, from their places among the diagrams.
-HWY_INLINE void draw_stack(const BatchLayout& layout, std::size_t count, const Places& places, const float* theta_i, const float* u,
-                           const float* v, float* x, float* y, float* z, float* pdf) {
+HWY_INLINE void draw_stack(const BatchLayout& layout, std::size_t count, const Places& places, const float* theta_i,
+                           const float* u, const float* v, float* x, float* y, float* z, float* pdf) {
   const D d;
   const DI di;
   DiskBlock disk;
@@ -193,7 +212,8 @@ HWY_INLINE void draw_stack(const BatchLayout& layout, std::size_t count, const P
   for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
     hn::Store(block_of(layout, {hn::Load(di, places.k + k), hn::Load(d, places.alpha + k)}), di, disk.block + k);
     const Folded uv = square_to_diagram(hn::LoadU(d, u + k), hn::LoadU(d, v + k), layout.half_azimuth);
-    hn::Store(hn::Mul(uv.u, set(layout.whole_mass())), d, disk.target + k), hn::Store(uv.v, d, disk.v + k), hn::Store(uv.rest, d, disk.rest + k);
+    hn::Store(hn::Mul(uv.u, set(layout.whole_mass())), d, disk.target + k), hn::Store(uv.v, d, disk.v + k),
+        hn::Store(uv.rest, d, disk.rest + k);
     hn::Store(uv.sign(), d, sign + k);
   }
   if (layout.angles.count == 1 || layout.interpolation == Interpolation::nearest) {
@@ -204,22 +224,25 @@ HWY_INLINE void draw_stack(const BatchLayout& layout, std::size_t count, const P
     draw_displacement(layout, count, places.alpha, disk);
   }
   for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
-    const Drawn at = from_disk(layout, hn::LoadU(d, theta_i + k), hn::Load(d, disk.r + k), hn::Load(d, disk.gap + k), hn::Load(d, disk.phi + k),
-                               hn::Load(d, sign + k), hn::Load(d, disk.pdf + k));
-    hn::StoreU(at.wo.x, d, x + k), hn::StoreU(at.wo.y, d, y + k), hn::StoreU(at.wo.z, d, z + k), hn::StoreU(at.pdf, d, pdf + k);
+    const Drawn at = from_disk(layout, hn::LoadU(d, theta_i + k), hn::Load(d, disk.r + k), hn::Load(d, disk.gap + k),
+                               hn::Load(d, disk.phi + k), hn::Load(d, sign + k), hn::Load(d, disk.pdf + k));
+    hn::StoreU(at.wo.x, d, x + k), hn::StoreU(at.wo.y, d, y + k), hn::StoreU(at.wo.z, d, z + k),
+        hn::StoreU(at.pdf, d, pdf + k);
   }
 }
 
-/// Calls body(elements, inputs, outputs) for blocks of whole vectors; the last, incomplete one by way of copies. With vectors of one
-/// element for the one that there is, the compiler being told so.
+/// Calls body(elements, inputs, outputs) for blocks of whole vectors; the last, incomplete one by way of copies. With
+/// vectors of one element for the one that there is, the compiler being told so.
 #if GONIO_LANE_CAP == 1
 template <int inputs, int outputs, class Body>
-HWY_INLINE void for_blocks(std::size_t, const float* const (&in)[inputs], float* const (&out)[outputs], const Body& body) {
+HWY_INLINE void for_blocks(std::size_t, const float* const (&in)[inputs], float* const (&out)[outputs],
+                           const Body& body) {
   body(std::integral_constant<std::size_t, 1>(), in, out);
 }
 #else
 template <int inputs, int outputs, class Body>
-HWY_INLINE void for_blocks(std::size_t count, const float* const (&in)[inputs], float* const (&out)[outputs], const Body& body) {
+HWY_INLINE void for_blocks(std::size_t count, const float* const (&in)[inputs], float* const (&out)[outputs],
+                           const Body& body) {
   const std::size_t lanes = hn::Lanes(D());
   const float* x[inputs];
   float* y[outputs];
@@ -247,16 +270,18 @@ HWY_INLINE void for_blocks(std::size_t count, const float* const (&in)[inputs], 
 
 /// body(inputs, outputs) on whole vectors.
 template <int inputs, int outputs, class Body>
-HWY_INLINE void for_vectors(std::size_t count, const float* const (&in)[inputs], float* const (&out)[outputs], const Body& body) {
-  for_blocks(count, in, out, [&](auto elements, const float* const (&x)[inputs], float* const (&y)[outputs]) GONIO_INLINED {
-    const D d;
-    V from[inputs], to[outputs];
-    for (std::size_t k = 0; k < elements; k += hn::Lanes(d)) {
-      for (int i = 0; i < inputs; ++i) from[i] = hn::LoadU(d, x[i] + k);
-      body(from, to);
-      for (int i = 0; i < outputs; ++i) hn::StoreU(to[i], d, y[i] + k);
-    }
-  });
+HWY_INLINE void for_vectors(std::size_t count, const float* const (&in)[inputs], float* const (&out)[outputs],
+                            const Body& body) {
+  for_blocks(count, in, out,
+             [&](auto elements, const float* const(&x)[inputs], float* const(&y)[outputs]) GONIO_INLINED {
+               const D d;
+               V from[inputs], to[outputs];
+               for (std::size_t k = 0; k < elements; k += hn::Lanes(d)) {
+                 for (int i = 0; i < inputs; ++i) from[i] = hn::LoadU(d, x[i] + k);
+                 body(from, to);
+                 for (int i = 0; i < outputs; ++i) hn::StoreU(to[i], d, y[i] + k);
+               }
+             });
 }
 
 }  // namespace GONIO_LANES

@@ -24,9 +24,12 @@ HWY_INLINE IncidentAngle incident_angle(V theta_i) {
 }
 
 /// is_above() of frame.h.
-HWY_INLINE M is_above(const Direction& w) { return hn::And(hn::Gt(w.z, zero()), hn::IsFinite(hn::Add(hn::Add(w.x, w.y), w.z))); }
+HWY_INLINE M is_above(const Direction& w) {
+  return hn::And(hn::Gt(w.z, zero()), hn::IsFinite(hn::Add(hn::Add(w.x, w.y), w.z)));
+}
 
-/// IncidentFrame, and its to_surface(). The angle by way of the radius, as radius_to_theta(): sooner at hand than an arc tangent.
+/// IncidentFrame, and its to_surface(). The angle by way of the radius, as radius_to_theta(): sooner at hand than an
+/// arc tangent.
 struct Frame {
   IncidentAngle i;
   V cos_phi, sin_phi;
@@ -37,8 +40,9 @@ struct Frame {
     const V steep = hn::Div(sine2, hn::Add(one, hn::Max(wi.z, zero())));  // direction_to_polar()
     const V r2 = hn::IfThenElse(hn::Lt(wi.z, set(0.5f)), hn::Sub(one, wi.z), steep);
     i.r = hn::IfThenElseZero(above, hn::Min(hn::Sqrt(r2), one));  // a number whatever wi is: places are found by it
-    i.theta = hn::Mul(i.r, polynomial(hn::Mul(i.r, i.r), 1.414213546f, 1.178531667e-1f, 2.647448250e-2f, 8.216730964e-3f, 1.478859820e-3f,
-                                      3.338417016e-3f, -1.990642964e-3f, 1.211737771e-3f));
+    i.theta =
+        hn::Mul(i.r, polynomial(hn::Mul(i.r, i.r), 1.414213546f, 1.178531667e-1f, 2.647448250e-2f, 8.216730964e-3f,
+                                1.478859820e-3f, 3.338417016e-3f, -1.990642964e-3f, 1.211737771e-3f));
     const M tilted = hn::Gt(sine2, zero());
     const V inverse = hn::Div(one, hn::Sqrt(sine2));
     cos_phi = hn::IfThenElse(tilted, hn::Mul(wi.x, inverse), one);

@@ -116,7 +116,8 @@ HWY_INLINE V polynomial(V x, C... c) {
   return in_pairs(x, hn::Mul(x, x), c...);
 }
 
-/// sin and cos for |x| <= 8: error 1e-7, absolute. Cephes' polynomials (sinf.c) over an eighth of a turn either side of the axes.
+/// sin and cos for |x| <= 8: error 1e-7, absolute. Cephes' polynomials (sinf.c) over an eighth of a turn either side of
+/// the axes.
 struct SinCos {
   V sin, cos;
 };
@@ -127,8 +128,8 @@ HWY_INLINE SinCos sin_cos(V x) {
   const V t = hn::NegMulAdd(quarter, set(-4.37113883e-8f), hn::NegMulAdd(quarter, set(1.57079637f), x));
   const V z = hn::Mul(t, t);
   const V s = hn::MulAdd(hn::Mul(polynomial(z, -1.6666654611e-1f, 8.3321608736e-3f, -1.9515295891e-4f), z), t, t);
-  const V c = hn::MulAdd(polynomial(z, -0.5f, 4.166664568298827e-2f, -1.388731625493765e-3f, 2.443315711809948e-5f), z,
-                         set(1));
+  const V c =
+      hn::MulAdd(polynomial(z, -0.5f, 4.166664568298827e-2f, -1.388731625493765e-3f, 2.443315711809948e-5f), z, set(1));
   const auto odd = hn::RebindMask(D(), hn::Ne(hn::And(k, set_int(1)), hn::Zero(DI())));
   const V sin_sign = hn::BitCast(D(), hn::ShiftLeft<30>(hn::And(k, set_int(2))));
   const V cos_sign = hn::BitCast(D(), hn::ShiftLeft<30>(hn::And(hn::Add(k, set_int(1)), set_int(2))));
@@ -145,7 +146,8 @@ HWY_INLINE V abs_atan2(V y, V x) {
   return hn::IfThenElse(hn::Lt(x, zero()), hn::Sub(set(3.14159265f), p), p);
 }
 
-/// cube_root() of fast_math.h: inputs are kept from making numbers so small that the machine computes them in microcode.
+/// cube_root() of fast_math.h: inputs are kept from making numbers so small that the machine computes them in
+/// microcode.
 struct CubeRoot {
   V root, inverse;
 };
@@ -176,7 +178,8 @@ struct Cell {
   HWY_INLINE V gap(V s) const { return hn::NegMulAdd(s, h, hn::Sub(set(1), r0)); }
   /// from_end() in the lanes of `ends`, this cell in the others.
   HWY_INLINE Cell from_end(M ends, V r1) const {
-    return {hn::IfThenElse(ends, r1, r0), hn::IfThenElse(ends, hn::Neg(h), h), hn::IfThenElse(ends, d1, d0), hn::IfThenElse(ends, d0, d1)};
+    return {hn::IfThenElse(ends, r1, r0), hn::IfThenElse(ends, hn::Neg(h), h), hn::IfThenElse(ends, d1, d0),
+            hn::IfThenElse(ends, d0, d1)};
   }
   HWY_INLINE V density_at(V r, V to_horizon, V r1) const {
     const V t = clamp01(hn::Div(hn::IfThenElse(hn::Lt(r1, set(1)), hn::Sub(r1, r), to_horizon), h));
@@ -192,7 +195,8 @@ struct Cell {
   HWY_INLINE V mean() const {
     return hn::MulAdd(r0, hn::Add(d0, d1), hn::Mul(hn::Mul(h, set(1.0f / 3)), hn::MulAdd(set(2), d1, d0)));
   }
-  /// RadialCell::invert() of the mass `inside`, `sum` being mean() and `whole` the mass; 0 where the cell or `inside` has none.
+  /// RadialCell::invert() of the mass `inside`, `sum` being mean() and `whole` the mass; 0 where the cell or `inside`
+  /// has none.
   HWY_INLINE V invert(V inside, V sum, V whole) const {
     const V one = set(1), third = set(1.0f / 3);
     const V scale = hn::Div(one, sum);
@@ -236,7 +240,8 @@ struct CellDraw {
   HWY_INLINE void keep_off_end(float at_horizon) {
     constexpr float inside = 256 * 1.1920929e-7f;
     const M beyond = hn::Lt(gap(), set(at_horizon));
-    const M at_end = hn::And(hn::And(hn::Lt(cell.h, zero()), hn::Lt(cell.r0, set(1))), hn::Lt(hn::Neg(hn::Mul(s, cell.h)), set(inside)));
+    const M at_end = hn::And(hn::And(hn::Lt(cell.h, zero()), hn::Lt(cell.r0, set(1))),
+                             hn::Lt(hn::Neg(hn::Mul(s, cell.h)), set(inside)));
     if (HWY_LIKELY(hn::AllFalse(D(), hn::Or(beyond, at_end)))) return;
     const V way = hn::IfThenElse(beyond, hn::Sub(hn::Sub(set(1), cell.r0), set(at_horizon)), set(-inside));
     s = hn::IfThenElse(hn::Or(beyond, at_end), clamp01(hn::Div(way, cell.h)), s);
@@ -264,7 +269,8 @@ HWY_INLINE V displaced_density(V w0, V w1, V whole_mass, const Displaced& a, con
   const M use0 = hn::Gt(w0, zero()), use1 = hn::Gt(w1, zero());
   const auto quotients = [&](V x0, V y0, V x1, V y1) HWY_ATTR {
     const M infinite = hn::Or(hn::AndNot(hn::Gt(y0, zero()), use0), hn::AndNot(hn::Gt(y1, zero()), use1));
-    const V sum = hn::Add(hn::IfThenElseZero(use0, hn::Mul(w0, hn::Div(x0, y0))), hn::IfThenElseZero(use1, hn::Mul(w1, hn::Div(x1, y1))));
+    const V sum = hn::Add(hn::IfThenElseZero(use0, hn::Mul(w0, hn::Div(x0, y0))),
+                          hn::IfThenElseZero(use1, hn::Mul(w1, hn::Div(x1, y1))));
     return hn::IfThenZeroElse(infinite, sum);
   };
   const V slope_phi = quotients(whole_mass, a.mass, whole_mass, b.mass);

@@ -1,4 +1,5 @@
-// The maps of Diagram, Blend and Displacement on vectors, once per instruction set: included by the kernels' own files alone.
+// The maps of Diagram, Blend and Displacement on vectors, once per instruction set: included by the kernels' own files
+// alone.
 #if defined(GONIO_BATCH_MAPS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef GONIO_BATCH_MAPS_INL_H
 #undef GONIO_BATCH_MAPS_INL_H
@@ -17,12 +18,14 @@ struct Uniform {
   V u, v, pdf;
 };
 
-/// The last of the `lines` values from base[start] on, which ascend, that is below t, the ends apart: its index from base, in every lane.
+/// The last of the `lines` values from base[start] on, which ascend, that is below t, the ends apart: its index from
+/// base, in every lane.
 HWY_INLINE VI find(const float* base, VI start, int lines, V t) {
   const Lanes<V> targets(t);
   Lanes<VI> index(start);
   for (std::size_t lane = 0; lane < hn::Lanes(D()); ++lane)
-    index.x[lane] += static_cast<int>(count_below<true, LongPass>(Row{base + index.x[lane]}, 1, lines - 2, targets.x[lane]));
+    index.x[lane] +=
+        static_cast<int>(count_below<true, LongPass>(Row{base + index.x[lane]}, 1, lines - 2, targets.x[lane]));
   return index.vector();
 }
 
@@ -79,7 +82,8 @@ struct DiagramLanes {
   };
   HWY_INLINE Sector sector(const CellPlace& i) const {
     const VI group = index(layout.meridian_groups, hn::Mul(i.group, set_int(BatchLayout::meridian_group)));
-    const VI before = hn::Add(group, i.in_group), first = hn::Add(hn::Add(before, i.in_group), set_int(BatchLayout::group + 1));
+    const VI before = hn::Add(group, i.in_group),
+             first = hn::Add(hn::Add(before, i.in_group), set_int(BatchLayout::group + 1));
     const Two line0 = source.two(first), line1 = source.two(hn::Add(first, set_int(2)));
     return {i.k, line0.first, line1.first, line0.second, line1.second, source.value(before)};
   }
@@ -95,16 +99,20 @@ struct DiagramLanes {
   }
   HWY_INLINE Ring ring(VI i, V a, const CellPlace& j) const {
     const VI before0 = before_in_ring(i, j);
-    const VI before1 = hn::Add(before0, set_int(layout.along * BatchLayout::parallel_group)), density = set_int(BatchLayout::group);
+    const VI before1 = hn::Add(before0, set_int(layout.along * BatchLayout::parallel_group)),
+             density = set_int(BatchLayout::group);
     const Two d0 = source.two(hn::Add(before0, density)), d1 = source.two(hn::Add(before1, density));
     const Two r = two_at(source.values + layout.r, hn::Add(block, j.k));
     return {{r.first, hn::Sub(r.second, r.first), mix(a, d0.first, d1.first), mix(a, d0.second, d1.second)},
-            mix(a, source.value(before0), source.value(before1)), r.second};
+            mix(a, source.value(before0), source.value(before1)),
+            r.second};
   }
 
-  /// The mass along the meridian at `a` in a sector from a cell between two parallels on. Differences first: they are exact.
+  /// The mass along the meridian at `a` in a sector from a cell between two parallels on. Differences first: they are
+  /// exact.
   HWY_INLINE V mass_from(const Sector& s, V a, const CellPlace& j) const {
-    const VI first = before_in_ring(s.i, j), second = hn::Add(first, set_int(layout.along * BatchLayout::parallel_group));
+    const VI first = before_in_ring(s.i, j),
+             second = hn::Add(first, set_int(layout.along * BatchLayout::parallel_group));
     return mix(a, hn::Sub(s.m0, source.value(first)), hn::Sub(s.m1, source.value(second)));
   }
 
@@ -125,7 +133,8 @@ struct DiagramLanes {
   HWY_INLINE Uniform invert(V radius, V gap, V angle) const {
     const Meridian m = meridian_through(angle);
     const Ring at = ring(m.sector.i, m.a, find_r(radius));
-    const V inside = hn::Mul(hn::Mul(m.a, hn::Sub(m.sector.phi1, m.sector.phi0)), hn::Mul(set(0.5f), hn::Add(m.sector.m0, m.mass)));
+    const V inside =
+        hn::Mul(hn::Mul(m.a, hn::Sub(m.sector.phi1, m.sector.phi0)), hn::Mul(set(0.5f), hn::Add(m.sector.m0, m.mass)));
     const V u = hn::Div(hn::Add(m.sector.before, inside), set(layout.whole_mass()));
     const V s = at.cell.place(radius), v = quotient(hn::Add(at.before, at.cell.mass(s)), m.mass);
     return {hn::Min(u, set(1)), hn::Min(v, set(1)), at.cell.density_at(radius, gap, at.end)};
@@ -182,8 +191,13 @@ struct DisplacementLanes {
     Cell cell;
 
     HWY_INLINE Along(const OneDiagram& diagram, const Across& across, M from_horizon)
-        : d(diagram), sector(across.sector), outer(from_horizon), a(across.a), scale(quotient(set(1), across.mass)),
-          first(set(1)), last(set(-1)) {}
+        : d(diagram),
+          sector(across.sector),
+          outer(from_horizon),
+          a(across.a),
+          scale(quotient(set(1), across.mass)),
+          first(set(1)),
+          last(set(-1)) {}
     HWY_INLINE void move(V way) {
       const V one = set(1);
       if (!hn::AllTrue(D(), hn::And(hn::Ge(way, first), hn::Le(way, last)))) {

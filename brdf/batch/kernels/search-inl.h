@@ -1,4 +1,5 @@
-// Searches among the lines of a diagram, one element at a time, once per instruction set: included by the kernels' own files alone.
+// Searches among the lines of a diagram, one element at a time, once per instruction set: included by the kernels' own
+// files alone.
 #if defined(GONIO_BATCH_SEARCH_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef GONIO_BATCH_SEARCH_INL_H
 #undef GONIO_BATCH_SEARCH_INL_H
@@ -15,9 +16,9 @@ namespace gonio {
 namespace HWY_NAMESPACE {
 inline namespace GONIO_LANES {
 
-// A search is a pass of vectors that count what is below, one element at a time. Bisection in all lanes at once waits for a gather at
-// each of its steps.
-using Pass = hn::CappedTag<float, 8>;      // among groups and in them
+// A search is a pass of vectors that count what is below, one element at a time. Bisection in all lanes at once waits
+// for a gather at each of its steps.
+using Pass = hn::CappedTag<float, 8>;     // among groups and in them
 using LongPass = hn::ScalableTag<float>;  // among all lines
 
 struct Row {
@@ -55,10 +56,12 @@ struct MixedRow {
 template <std::size_t count, class Values>
 HWY_INLINE void copy_values(const Values& values, std::ptrdiff_t k, float* to) {
   const hn::CappedTag<float, count> d;
-  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) hn::StoreU(values.mixed(d, k + static_cast<std::ptrdiff_t>(i)), d, to + i);
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d))
+    hn::StoreU(values.mixed(d, k + static_cast<std::ptrdiff_t>(i)), d, to + i);
 }
 
-/// How many of the values k .. k + count - 1, which ascend, are below the target. `whole`: up to the end of a vector none of those behind is.
+/// How many of the values k .. k + count - 1, which ascend, are below the target. `whole`: up to the end of a vector
+/// none of those behind is.
 template <bool whole, class Tag = Pass, class Values>
 HWY_INLINE std::ptrdiff_t count_below(const Values& values, std::ptrdiff_t k, std::ptrdiff_t count, float target) {
   const Tag d;

@@ -68,7 +68,8 @@ HWY_INLINE VI block_of(const BatchLayout& layout, const Place& place) {
 template <class Call>
 HWY_INLINE auto with_lanes(const BatchLayout& layout, const Place& place, const Call& call) {
   const VI block = block_of(layout, place);
-  if (layout.angles.count == 1 || layout.interpolation == Interpolation::nearest) return call(OneDiagram{layout, {layout.values()}, block});
+  if (layout.angles.count == 1 || layout.interpolation == Interpolation::nearest)
+    return call(OneDiagram{layout, {layout.values()}, block});
   if (layout.interpolation == Interpolation::blend)
     return call(DiagramLanes<Blended>{layout, {layout.values(), layout.stride, place.alpha}, block});
   return call(DisplacementLanes(layout, block, place.alpha));
@@ -84,7 +85,8 @@ HWY_INLINE DiskPlace to_disk(const BatchLayout& layout, V theta_i, const Directi
 /// Stack::pdf().
 HWY_INLINE V pdf_stack(const BatchLayout& layout, const Place& place, V theta_i, const Direction& wo) {
   const DiskPlace disk = to_disk(layout, theta_i, {wo.x, wo.y, hn::Max(wo.z, zero())});
-  const V density = with_lanes(layout, place, [&](const auto& lanes) HWY_ATTR { return lanes.pdf(disk.r, disk.gap, disk.phi); });
+  const V density =
+      with_lanes(layout, place, [&](const auto& lanes) HWY_ATTR { return lanes.pdf(disk.r, disk.gap, disk.phi); });
   return hn::IfThenElseZero(hn::Ge(wo.z, zero()), hn::Div(density, disk.jacobian));
 }
 
@@ -94,7 +96,8 @@ struct Inverted {
 };
 HWY_INLINE Inverted invert_stack(const BatchLayout& layout, const Place& place, V theta_i, const Direction& wo) {
   const DiskPlace disk = to_disk(layout, theta_i, {wo.x, wo.y, hn::Max(wo.z, zero())});
-  const Uniform at = with_lanes(layout, place, [&](const auto& lanes) HWY_ATTR { return lanes.invert(disk.r, disk.gap, disk.phi); });
+  const Uniform at =
+      with_lanes(layout, place, [&](const auto& lanes) HWY_ATTR { return lanes.invert(disk.r, disk.gap, disk.phi); });
   const Square square = diagram_to_square(at.u, at.v, hn::Lt(wo.y, zero()), layout.half_azimuth);
   const M found = hn::And(hn::Ge(wo.z, zero()), hn::Gt(at.pdf, zero()));
   return {hn::IfThenElseZero(found, square.u), hn::IfThenElseZero(found, square.v),

@@ -1,10 +1,9 @@
-#include <gonio/brdf/build/budget/incidence_profile.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <string>
 
+#include <gonio/brdf/build/budget/incidence_profile.h>
 #include <gonio/mapping/base/error.h>
 #include <gonio/mapping/charts/hemisphere.h>
 

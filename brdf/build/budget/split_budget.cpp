@@ -1,5 +1,3 @@
-#include <gonio/brdf/build/budget/split_budget.h>
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -7,6 +5,7 @@
 #include <string>
 #include <tuple>
 
+#include <gonio/brdf/build/budget/split_budget.h>
 #include <gonio/mapping/base/error.h>
 
 namespace gonio {
@@ -39,8 +38,8 @@ void check(const std::vector<Curve>& curves, const std::vector<double>& weights)
       throw Error("budget: curve " + std::to_string(k) + ": found no points, expected at least one");
     for (const BudgetPoint& p : curves[k]) {
       if (!(p.variance >= 0) || std::isinf(p.variance)) {
-        throw Error("budget: curve " + std::to_string(k) + ": variance: found " +
-                    std::to_string(p.variance) + ", expected a finite number >= 0");
+        throw Error("budget: curve " + std::to_string(k) + ": variance: found " + std::to_string(p.variance) +
+                    ", expected a finite number >= 0");
       }
     }
   }
@@ -61,8 +60,8 @@ std::vector<std::size_t> split_budget(const std::vector<Curve>& curves, const st
     smallest += first->bytes;
   }
   if (smallest > bytes) {
-    throw Error("budget: found " + std::to_string(bytes) + " bytes, expected at least " +
-                std::to_string(smallest) + ", what the smallest of every material take together");
+    throw Error("budget: found " + std::to_string(bytes) + " bytes, expected at least " + std::to_string(smallest) +
+                ", what the smallest of every material take together");
   }
 
   std::size_t left = bytes - smallest;

@@ -1,8 +1,7 @@
-#include <gonio/brdf/build/compact/colour_of_table.h>
-
 #include <algorithm>
 #include <cmath>
 
+#include <gonio/brdf/build/compact/colour_of_table.h>
 #include <gonio/mapping/base/parallel.h>
 
 namespace gonio {

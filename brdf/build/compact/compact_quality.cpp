@@ -1,9 +1,8 @@
-#include <gonio/brdf/build/compact/compact_quality.h>
-
 #include <algorithm>
 #include <cmath>
 #include <random>
 
+#include <gonio/brdf/build/compact/compact_quality.h>
 #include <gonio/mapping/base/parallel.h>
 
 namespace gonio {
@@ -33,13 +32,16 @@ double incidence_weight(const Incidence& incidence, double theta_i) {
 
 CompactDraws::CompactDraws(const BrdfTable& table, const DirectionMap& map, const Incidence& incidence) {
   constexpr int side = 64;
-  for (const double theta_i : angles_looked_at()) angles_.push_back({theta_i, incidence_weight(incidence, theta_i), 0, {}});
+  for (const double theta_i : angles_looked_at())
+    angles_.push_back({theta_i, incidence_weight(incidence, theta_i), 0, {}});
   parallel_for(angles_.size(), [&](std::size_t k) {
     Angle& angle = angles_[k];
     const float theta_i = static_cast<float>(angle.theta_i);
     const glm::vec3 wi(std::sin(theta_i), 0, std::cos(theta_i));
     std::mt19937 random(1);
-    const auto jittered = [&](int i) { return (static_cast<float>(i) + static_cast<float>(random() >> 8) * 0x1p-24f) / side; };
+    const auto jittered = [&](int i) {
+      return (static_cast<float>(i) + static_cast<float>(random() >> 8) * 0x1p-24f) / side;
+    };
     double sum = 0, sum2 = 0;
     for (int i = 0; i < side; ++i) {
       for (int j = 0; j < side; ++j) {
@@ -102,7 +104,8 @@ std::vector<double> CompactDraws::worst_angles(double limit, std::size_t count) 
   std::stable_sort(over.begin(), over.end(), [](const Angle* a, const Angle* b) { return a->relvar > b->relvar; });
   std::vector<double> found;
   for (const Angle* a : over) {
-    const bool apart = std::all_of(found.begin(), found.end(), [a](double f) { return std::abs(f - a->theta_i) > 3 * degree; });
+    const bool apart =
+        std::all_of(found.begin(), found.end(), [a](double f) { return std::abs(f - a->theta_i) > 3 * degree; });
     if (apart && found.size() < count) found.push_back(a->theta_i);
   }
   return found;

@@ -2,11 +2,12 @@
 
 #include <cstddef>
 #include <functional>
-#include <glm/vec3.hpp>
 #include <vector>
 
-#include <gonio/brdf/build/stack/bsdf_options.h>
+#include <glm/vec3.hpp>
+
 #include <gonio/brdf/build/compact/colour_of_table.h>
+#include <gonio/brdf/build/stack/bsdf_options.h>
 
 namespace gonio {
 

@@ -1,9 +1,10 @@
-#include <gonio/brdf/build/compact/fit_colour.h>
-
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
 #include <limits>
+
+#include <glm/common.hpp>
+
+#include <gonio/brdf/build/compact/fit_colour.h>
 
 namespace gonio::detail {
 namespace {
@@ -105,7 +106,8 @@ ColourFit fit_colour(const BrdfTable& table, const DirectionMap& map, const std:
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const ColourFit& a, const ColourFit& b) { return a.colour.bytes() < b.colour.bytes(); });
   for (ColourFit& c : candidates)
-    if (c.quality.eval_error <= std::max(enough, 1.05 * error + 5e-4) && c.quality.albedo_error <= std::max(0.003, 1.1 * albedo))
+    if (c.quality.eval_error <= std::max(enough, 1.05 * error + 5e-4) &&
+        c.quality.albedo_error <= std::max(0.003, 1.1 * albedo))
       return std::move(c);
   // No candidate is good in both respects: the nearest.
   return std::move(*std::min_element(candidates.begin(), candidates.end(), [](const ColourFit& a, const ColourFit& b) {

@@ -1,5 +1,3 @@
-#include <gonio/brdf/build/compact/fit_compact.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,9 +6,10 @@
 #include <utility>
 
 #include <gonio/brdf/build/compact/fit_colour.h>
+#include <gonio/brdf/build/compact/fit_compact.h>
 #include <gonio/brdf/build/stack/grow_stack.h>
-#include <gonio/mapping/base/parallel.h>
 #include <gonio/mapping/base/error.h>
+#include <gonio/mapping/base/parallel.h>
 #include <gonio/mapping/stack/packed_stack.h>
 
 namespace gonio {
@@ -31,7 +30,8 @@ class Fitter {
   Fitter(const BrdfTable& table, const BsdfOptions& options, const Progress& progress)
       : table_(table), options_(options), charts_(candidates(options)), progress_(progress) {
     if (options.max_variance && !(*options.max_variance > 0))
-      throw Error("compact fit: max_variance: found " + std::to_string(*options.max_variance) + ", expected more than 0");
+      throw Error("compact fit: max_variance: found " + std::to_string(*options.max_variance) +
+                  ", expected more than 0");
     if (options.budget < 1024)
       throw Error("compact fit: budget: found " + std::to_string(options.budget) + " bytes, expected at least 1024");
     for (const int size : {options.incident, options.meridians, options.parallels})
@@ -47,26 +47,31 @@ class Fitter {
     out_of_bytes_ = true;
     if (size.least() > bytes) return std::nullopt;
     const detail::Recipe recipe(table_, chart, lines);
-    detail::GrowthLimits limits{3, static_cast<std::size_t>(options_.incident), bytes - size.lines, tolerance, [&size](const Diagram<double>&) { return size.diagram; }};
+    detail::GrowthLimits limits{3, static_cast<std::size_t>(options_.incident), bytes - size.lines, tolerance,
+                                [&size](const Diagram<double>&) { return size.diagram; }};
     // A variance that is to hold at every angle holds at those that are rarely seen, too.
     if (!options_.max_variance)
       limits.weight = [this](double theta_i) { return incidence_weight(options_.incidence, theta_i); };
     if (cut) limits.bytes = limits.bytes * 9 / 10;  // the colour's share
-    detail::Grown grown = grow_stack(recipe, Interpolation::blend, limits, [&](double share) { report(from + growth_share * share * way); });
+    detail::Grown grown = grow_stack(recipe, Interpolation::blend, limits,
+                                     [&](double share) { report(from + growth_share * share * way); });
     report(from + growth_share * way);
     out_of_bytes_ = grown.out_of_bytes;
     if (grown.out_of_bytes && !cut) return std::nullopt;
     const PackedStack stack(grown.grid);
     const DirectionMap map = direction_map(stack);
     const CompactDraws draws(table_, map, options_.incidence);
-    CompactFit fit{{stack.grid(), Interpolation::blend, Storage::packed16, {}}, stack.bytes(), tolerance,
+    CompactFit fit{{stack.grid(), Interpolation::blend, Storage::packed16, {}},
+                   stack.bytes(),
+                   tolerance,
                    draws.quality([](float, const CompactDraw& d) { return d.weight; })};
     // A stack that will not be chosen needs no colour.
     if (cut || fit.quality.worst_relvar <= options_.max_variance.value_or(fit.quality.worst_relvar)) {
       // Not `bytes`: a colour made to fit under another stack's would be a worse one.
       const std::size_t left = options_.budget > stack.bytes() + 200 ? options_.budget - stack.bytes() - 200 : 0;
       const int finest_side = colour_error > 0 ? 16 : 32;
-      detail::ColourFit fitted = detail::fit_colour(table_, map, stack.theta_i(), draws, finest_side, left, colour_error);
+      detail::ColourFit fitted =
+          detail::fit_colour(table_, map, stack.theta_i(), draws, finest_side, left, colour_error);
       fit.data.colour = std::move(fitted.colour), fit.quality = fitted.quality;
       fit.bytes += fit.data.colour.bytes();
     }
@@ -144,13 +149,15 @@ class Fitter {
   std::size_t least_variance_within_budget(double max_variance) {
     const std::size_t before = tried.size();
     std::vector<double> tolerances;
-    for (double tolerance = max_variance; tolerance < coarsest_tolerance; tolerance *= 2) tolerances.push_back(tolerance);
+    for (double tolerance = max_variance; tolerance < coarsest_tolerance; tolerance *= 2)
+      tolerances.push_back(tolerance);
     std::size_t left = charts_.size();
     for (const Chart chart : charts_) {
       until_ = done_ + (1 - done_) / static_cast<double>(left--);
       const auto size = [&](double tolerance) { return Size(lines_of(chart, tolerance)); };
       double least = std::numeric_limits<double>::infinity();
-      auto tolerance = std::partition_point(tolerances.begin(), tolerances.end(), [&](double t) { return size(t).least() > options_.budget; });
+      auto tolerance = std::partition_point(tolerances.begin(), tolerances.end(),
+                                            [&](double t) { return size(t).least() > options_.budget; });
       while (tolerance != tolerances.end()) {
         if (const auto made = attempt(chart, *tolerance, options_.budget, colour_error(max_variance), true)) {
           // Once all angles that are wanted fit, more tolerance makes it worse; a little worse is chance before.
@@ -161,7 +168,8 @@ class Fitter {
         // Of as large diagrams, as many would fit.
         const Size here = size(*tolerance++);
         const auto as_large = [&](double t) { return size(t).diagram == here.diagram; };
-        if (tolerance != tolerances.end() && as_large(*tolerance)) tolerance = std::partition_point(tolerance, tolerances.end(), as_large);
+        if (tolerance != tolerances.end() && as_large(*tolerance))
+          tolerance = std::partition_point(tolerance, tolerances.end(), as_large);
       }
       report(until_);
     }
@@ -251,7 +259,9 @@ class Fitter {
   const LineFit& prepared(Chart chart) {
     const auto found = prepared_.find(chart);
     if (found != prepared_.end()) return found->second;
-    return prepared_.emplace(chart, detail::prepare_lines(table_, chart, options_.meridians, options_.parallels, extra_[chart])).first->second;
+    return prepared_
+        .emplace(chart, detail::prepare_lines(table_, chart, options_.meridians, options_.parallels, extra_[chart]))
+        .first->second;
   }
 
   /// Without the stacks that were found wanting before they had a colour.
@@ -266,15 +276,20 @@ class Fitter {
   }
 
   std::size_t least_worst() const {
-    return static_cast<std::size_t>(std::min_element(tried.begin(), tried.end(), [](const CompactFit& a, const CompactFit& b) {
-                                      return std::make_pair(a.quality.worst_relvar, a.bytes) < std::make_pair(b.quality.worst_relvar, b.bytes);
-                                    }) - tried.begin());
+    return static_cast<std::size_t>(std::min_element(tried.begin(), tried.end(),
+                                                     [](const CompactFit& a, const CompactFit& b) {
+                                                       return std::make_pair(a.quality.worst_relvar, a.bytes) <
+                                                              std::make_pair(b.quality.worst_relvar, b.bytes);
+                                                     }) -
+                                    tried.begin());
   }
 
   std::size_t least_eval_error() const {
-    return static_cast<std::size_t>(std::min_element(tried.begin(), tried.end(), [](const CompactFit& a, const CompactFit& b) {
-                                      return a.quality.eval_error < b.quality.eval_error;
-                                    }) - tried.begin());
+    return static_cast<std::size_t>(std::min_element(tried.begin(), tried.end(),
+                                                     [](const CompactFit& a, const CompactFit& b) {
+                                                       return a.quality.eval_error < b.quality.eval_error;
+                                                     }) -
+                                    tried.begin());
   }
 
   /// Never less than before.
@@ -289,7 +304,7 @@ class Fitter {
   const Progress& progress_;
   std::map<Chart, LineFit> prepared_;
   std::map<Chart, std::map<double, SharedLines>> lines_;  // by tolerance
-  std::map<Chart, std::vector<double>> extra_;  // angles that lines must see
+  std::map<Chart, std::vector<double>> extra_;            // angles that lines must see
   // Of the last attempt: angles with too large a variance, and whether diagrams were left out.
   std::vector<double> failing_;
   bool out_of_bytes_ = false;

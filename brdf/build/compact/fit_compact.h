@@ -3,17 +3,17 @@
 #include <cstddef>
 #include <vector>
 
-#include <gonio/brdf/build/stack/bsdf_options.h>
 #include <gonio/brdf/build/compact/compact_quality.h>
+#include <gonio/brdf/build/stack/bsdf_options.h>
 #include <gonio/mapping/base/progress.h>
 
 namespace gonio {
 
 /// A BSDF with colours of its own, fitted to a table.
 struct CompactFit {
-  BsdfData data;       ///< blend, packed16
-  std::size_t bytes;   ///< in that storage: of PackedStack and Colour
-  double tolerance;    ///< that the stack was built to
+  BsdfData data;      ///< blend, packed16
+  std::size_t bytes;  ///< in that storage: of PackedStack and Colour
+  double tolerance;   ///< that the stack was built to
   CompactQuality quality;
 };
 
@@ -29,10 +29,11 @@ struct CompactChoice {
 /// table (CompactDraws) instead of trusting the estimates that steer the growth. If the variance asked for is out
 /// of reach within the budget, the stack with the smallest worst variance is chosen: see its quality.
 /// Deterministic; uses all cores.
-/// With a variance asked for, the least bytes that have it at every angle up to 80 degrees, with a colour whose evaluation error is
-/// at most a fifth of its root, or hardly larger than that of the finest colour; otherwise the least evaluation error within the
-/// budget. Interpolation and storage of the options do not count.
-/// @throws Error for a variance that is not > 0, sizes out of range, or a budget of less than 1 KiB or into which nothing
+/// With a variance asked for, the least bytes that have it at every angle up to 80 degrees, with a colour whose
+/// evaluation error is at most a fifth of its root, or hardly larger than that of the finest colour; otherwise the
+/// least evaluation error within the budget. Interpolation and storage of the options do not count.
+/// @throws Error for a variance that is not > 0, sizes out of range, or a budget of less than 1 KiB or into which
+/// nothing
 ///   fits.
 CompactChoice fit_compact(const BrdfTable& table, const BsdfOptions& options = {}, const Progress& progress = {});
 

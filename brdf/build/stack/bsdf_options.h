@@ -23,8 +23,8 @@ struct BsdfOptions {
   std::optional<Chart> chart;  ///< none: of a blend the one that takes fewer bytes, otherwise outgoing
   Interpolation interpolation = Interpolation::blend;
   Storage storage = Storage::packed16;  ///< packed16: blend alone
-  /// The relative variance of sampling that is good enough, at and between all incident angles up to 80 degrees. None: the
-  /// least error of f_r within the budget.
+  /// The relative variance of sampling that is good enough, at and between all incident angles up to 80 degrees. None:
+  /// the least error of f_r within the budget.
   std::optional<double> max_variance = 0.003;
   std::size_t budget = 256 * 1024;  ///< bytes at most, in `storage`
   Incidence incidence;              ///< where the error counts; `max_variance` holds at every angle all the same

@@ -1,10 +1,9 @@
-#include <gonio/brdf/build/stack/build_stack.h>
-
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <string>
 
+#include <gonio/brdf/build/stack/build_stack.h>
 #include <gonio/brdf/build/stack/grow_stack.h>
 #include <gonio/mapping/base/error.h>
 
@@ -29,7 +28,8 @@ StackGrid build_stack(const BrdfTable& table, const BsdfOptions& options, const 
   if (options.incident < 2)
     throw Error("stack: incident: found " + std::to_string(options.incident) + ", expected at least 2");
   const double tolerance = options.max_variance.value_or(*BsdfOptions{}.max_variance);
-  if (!(tolerance > 0)) throw Error("stack: max_variance: found " + std::to_string(tolerance) + ", expected more than 0");
+  if (!(tolerance > 0))
+    throw Error("stack: max_variance: found " + std::to_string(tolerance) + ", expected more than 0");
   const Chart chart = options.chart.value_or(Chart::outgoing);
   const bool blend = options.interpolation == Interpolation::blend;
   std::optional<LineFit> shared;

@@ -28,7 +28,6 @@ double disk_density(const BrdfTable& table, Chart chart, double theta_i, Polar<d
 /// Of the options, chart, interpolation, variance, budget (of floats, once there are seven diagrams) and sizes count.
 /// A table that reflects nothing at an angle gets a cosine lobe there.
 /// @throws Error for sizes out of range.
-StackGrid build_stack(const BrdfTable& table, const BsdfOptions& options = {},
-                      const Progress& progress = {});
+StackGrid build_stack(const BrdfTable& table, const BsdfOptions& options = {}, const Progress& progress = {});
 
 }  // namespace gonio

@@ -1,7 +1,6 @@
-#include <gonio/brdf/build/stack/diagram_recipe.h>
-
 #include <algorithm>
 
+#include <gonio/brdf/build/stack/diagram_recipe.h>
 #include <gonio/brdf/build/stack/raise_tail.h>
 
 namespace gonio::detail {
@@ -25,7 +24,8 @@ LineFit prepare_lines(const BrdfTable& table, Chart chart, int most_meridians, i
                       const std::vector<double>& more) {
   constexpr int angles = 14;
   std::vector<DiskDensity> densities;
-  for (int k = 0; k < angles; ++k) densities.push_back(table_density(table, chart, pi<double> / 2 * (k + 0.5) / angles));
+  for (int k = 0; k < angles; ++k)
+    densities.push_back(table_density(table, chart, pi<double> / 2 * (k + 0.5) / angles));
   for (const double theta_i : more) densities.push_back(table_density(table, chart, theta_i));
   densities.push_back(cosine_density(chart, 0));  // lines for a black table, and for the floor
   return LineFit(densities, Azimuth::half, most_meridians, most_parallels);
@@ -45,7 +45,9 @@ DiagramGrid Recipe::diagram(double theta_i) const {
   return grid;
 }
 
-bool Recipe::can_be_raised(double theta_i) const { return chart_ == Chart::outgoing || theta_i < 89 * pi<double> / 180; }
+bool Recipe::can_be_raised(double theta_i) const {
+  return chart_ == Chart::outgoing || theta_i < 89 * pi<double> / 180;
+}
 
 void Recipe::raise(double theta_i, double mean, DiagramGrid& grid) const {
   raise_tail([density = density_at(theta_i), mean](Polar<double> at) { return density(at) / mean; }, grid);

@@ -17,21 +17,23 @@ LineFit prepare_lines(const BrdfTable& table, Chart chart, int most_meridians, i
 class Recipe {
  public:
   /// Every diagram has lines of its own.
-  Recipe(const BrdfTable& table, Chart chart, const FitLimits& limits) : table_(table), chart_(chart), limits_(limits) {}
+  Recipe(const BrdfTable& table, Chart chart, const FitLimits& limits)
+      : table_(table), chart_(chart), limits_(limits) {}
   /// All diagrams have these lines.
-  Recipe(const BrdfTable& table, Chart chart, SharedLines lines) : table_(table), chart_(chart), shared_(std::move(lines)) {}
+  Recipe(const BrdfTable& table, Chart chart, SharedLines lines)
+      : table_(table), chart_(chart), shared_(std::move(lines)) {}
 
   DiskDensity density_at(double theta_i) const;
 
   /// With the share of a cosine lobe; a cosine lobe alone where the table reflects nothing.
   DiagramGrid diagram(double theta_i) const;
 
-  /// Not next to grazing incidence in half vectors: these squeeze the horizon about the mirror direction of wi into next to no
-  /// solid angle, so that what is raised there is a spike that directions in float do not hold.
+  /// Not next to grazing incidence in half vectors: these squeeze the horizon about the mirror direction of wi into
+  /// next to no solid angle, so that what is raised there is a spike that directions in float do not hold.
   bool can_be_raised(double theta_i) const;
 
-  /// Raises a normalised diagram next to the horizon to the table's density at an incident angle (raise_tail()), where `mean` is
-  /// its mass.
+  /// Raises a normalised diagram next to the horizon to the table's density at an incident angle (raise_tail()), where
+  /// `mean` is its mass.
   void raise(double theta_i, double mean, DiagramGrid& grid) const;
 
   Chart chart() const { return chart_; }

@@ -1,11 +1,10 @@
-#include <gonio/brdf/build/stack/grow_stack.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <mutex>
 #include <set>
 
+#include <gonio/brdf/build/stack/grow_stack.h>
 #include <gonio/mapping/base/parallel.h>
 
 namespace gonio::detail {
@@ -60,7 +59,10 @@ MapWeights map_weights(const DiskDensity& density, const Map& map) {
 class Growth {
  public:
   Growth(const Recipe& recipe, Interpolation interpolation, const GrowthLimits& limits, const Progress& progress)
-      : recipe_(recipe), interpolation_(interpolation), limits_(limits), progress_(progress),
+      : recipe_(recipe),
+        interpolation_(interpolation),
+        limits_(limits),
+        progress_(progress),
         nodes_(incident_nodes(recipe.table(), interpolation)) {
     // Constant beyond them, too: such a table has no more to give.
     nodes_alone_ = std::holds_alternative<MbsdfTable>(recipe.table().data()) && recipe.chart() == Chart::outgoing &&
@@ -95,7 +97,8 @@ class Growth {
   std::optional<double> nearest_node(double to, double above, double below) const {
     std::optional<double> nearest;
     for (const double node : nodes_)
-      if (node > above + smallest_gap && node < below - smallest_gap && (!nearest || std::abs(node - to) < std::abs(*nearest - to)))
+      if (node > above + smallest_gap && node < below - smallest_gap &&
+          (!nearest || std::abs(node - to) < std::abs(*nearest - to)))
         nearest = node;
     return nearest;
   }
@@ -136,13 +139,12 @@ class Growth {
 
   MapWeights weights(double theta_i, const Built& a, const Built& b, double alpha) const {
     const DiskDensity density = recipe_.density_at(theta_i);
-    if (interpolation_ == Interpolation::blend)
-      return map_weights(density, Blend<double>(a.diagram, b.diagram, alpha));
+    if (interpolation_ == Interpolation::blend) return map_weights(density, Blend<double>(a.diagram, b.diagram, alpha));
     return map_weights(density, Displacement<double>(a.diagram, b.diagram, alpha));
   }
 
-  /// Recipe::diagram() has raised every diagram to its own table's density next to the horizon. Half way to its neighbours the
-  /// table may reflect more there.
+  /// Recipe::diagram() has raised every diagram to its own table's density next to the horizon. Half way to its
+  /// neighbours the table may reflect more there.
   void raise_tails() {
     std::vector<Interval> intervals;
     for (Interval it = built_.begin(); std::next(it) != built_.end(); ++it) intervals.push_back(it);
@@ -156,7 +158,8 @@ class Growth {
       if (!recipe_.can_be_raised(angle)) return;
       for (const std::size_t interval : {k - 1, k})
         if (interval < intervals.size() && means[interval] > 0)
-          recipe_.raise((intervals[interval]->first + std::next(intervals[interval])->first) / 2, means[interval], own.grid);
+          recipe_.raise((intervals[interval]->first + std::next(intervals[interval])->first) / 2, means[interval],
+                        own.grid);
       own.diagram = Diagram<double>(own.grid);
     });
   }
@@ -236,7 +239,8 @@ class Growth {
 
 }  // namespace
 
-Grown grow_stack(const Recipe& recipe, Interpolation interpolation, const GrowthLimits& limits, const Progress& progress) {
+Grown grow_stack(const Recipe& recipe, Interpolation interpolation, const GrowthLimits& limits,
+                 const Progress& progress) {
   return Growth(recipe, interpolation, limits, progress).take();
 }
 

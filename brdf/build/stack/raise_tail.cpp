@@ -1,9 +1,9 @@
-#include <gonio/brdf/build/stack/raise_tail.h>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
+
+#include <gonio/brdf/build/stack/raise_tail.h>
 
 namespace gonio::detail {
 namespace {
@@ -33,7 +33,8 @@ Masses masses(const DiagramGrid& grid) {
   for (std::size_t i = 0; i < grid.phi.size(); ++i) {
     double* mass = beyond.data() + i * rows;
     for (std::size_t j = rows - 1; j-- > 0;)
-      mass[j] = mass[j + 1] + RadialCell<double>{grid.r[j], grid.r[j + 1] - grid.r[j], grid.at(i, j), grid.at(i, j + 1)}.mass(1);
+      mass[j] = mass[j + 1] +
+                RadialCell<double>{grid.r[j], grid.r[j + 1] - grid.r[j], grid.at(i, j), grid.at(i, j + 1)}.mass(1);
     if (i > 0) whole += (grid.phi[i] - grid.phi[i - 1]) * (mass[0] + *(mass - rows)) / 2;
   }
   return {std::move(beyond), whole / grid.phi.back()};
@@ -67,7 +68,8 @@ void raise_horizon(const DiskDensity& density, const Masses& m, DiagramGrid& gri
       wanted[i] = std::max(wanted[i], end), wanted[next] = std::max(wanted[next], end);
     }
   }
-  for (std::size_t i = 0; i < count; ++i) grid.at(i, last) = std::max(grid.at(i, last), std::min(wanted[i], horizon_share * m.of_meridian(i, last + 1) / h));
+  for (std::size_t i = 0; i < count; ++i)
+    grid.at(i, last) = std::max(grid.at(i, last), std::min(wanted[i], horizon_share * m.of_meridian(i, last + 1) / h));
 }
 
 }  // namespace

@@ -1,32 +1,30 @@
-#include <gonio/mapping/numeric/fast_math.h>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
 #include <gonio/brdf/formats/repair.h>
 #include <gonio/brdf/formats/rgl/rgl.h>
 #include <gonio/mapping/base/error.h>
+#include <gonio/mapping/numeric/fast_math.h>
 #include <gonio/mapping/numeric/pi.h>
-
-#include <algorithm>
-#include <cmath>
-#include <glm/common.hpp>
-#include <glm/geometric.hpp>
-#include <limits>
 
 namespace gonio {
 namespace {
-
 
 // Of the unit square: draws nearer to its sides have their pdf computed from their direction.
 constexpr float edge = 0x1p-12f;
 
 // Elevation and azimuth of a direction that need not have unit length.
-float theta_of(const glm::vec3& w) noexcept {
-  return fast_atan2(std::sqrt(w.x * w.x + w.y * w.y), w.z);
-}
+float theta_of(const glm::vec3& w) noexcept { return fast_atan2(std::sqrt(w.x * w.x + w.y * w.y), w.z); }
 
 // The file's chart of directions: u_theta = sqrt(2 theta / pi), u_phi = (phi + pi) / (2 pi).
 float u_theta_of(float theta) noexcept { return std::sqrt(theta * (2.0f / pi<float>)); }
 
-// Solid angle of the normals per unit area of the chart. The authors' loader lets it fall to 1e-6 and no further: next to
-// the pole, where the densities of the chart fall to 0 with it, the pdf would then be too small by any factor.
+// Solid angle of the normals per unit area of the chart. The authors' loader lets it fall to 1e-6 and no further: next
+// to the pole, where the densities of the chart fall to 0 with it, the pdf would then be too small by any factor.
 float area_of_normals(float u_theta, float sine) noexcept {
   return std::max(2.0f * pi<float> * pi<float> * u_theta * sine, 1e-20f);
 }
@@ -50,9 +48,9 @@ CellCounts repair_grid(RglFile::Grid& grid, const std::string& name, const CellP
   }
   const auto n = static_cast<std::size_t>(grid.slices);
   const auto height = static_cast<std::size_t>(grid.height), width = static_cast<std::size_t>(grid.width);
-  const CellCounts counts = repair_cells(
-      cells, kinds, policies,
-      {{n * height, width, 1, false}, {n, height, width, false}, {1, n, height * width, false}}, name);
+  const CellCounts counts =
+      repair_cells(cells, kinds, policies,
+                   {{n * height, width, 1, false}, {n, height, width, false}, {1, n, height * width, false}}, name);
   for (std::size_t i = 0; i < cells.size(); ++i) grid.values[i] = cells[i].r;
   return counts;
 }
@@ -85,8 +83,7 @@ RglTable::RglTable(RglFile file, const CellPolicies& policies)
       ndf_(std::move(file.ndf)),
       sigma_(std::move(file.sigma)),
       vndf_(file.vndf.slices, file.vndf.height, file.vndf.width, file.vndf.values),
-      luminance_(file.luminance.slices, file.luminance.height, file.luminance.width,
-                 file.luminance.values),
+      luminance_(file.luminance.slices, file.luminance.height, file.luminance.width, file.luminance.values),
       colour_height_(file.colour_height),
       colour_width_(file.colour_width),
       colour_(std::move(file.colour)),
@@ -99,9 +96,8 @@ RglTable::RglTable(RglFile file, const CellPolicies& policies)
   const auto n = theta_i_.size();
   const auto height = static_cast<std::size_t>(colour_height_);
   const auto width = static_cast<std::size_t>(colour_width_);
-  counts_ = repair_cells(
-      colour_, kinds, policies,
-      {{n * height, width, 1, false}, {n, height, width, false}, {1, n, height * width, false}});
+  counts_ = repair_cells(colour_, kinds, policies,
+                         {{n * height, width, 1, false}, {n, height, width, false}, {1, n, height * width, false}});
   measured_ = MeasuredCells(cell_origins(kinds, policies), colour_height_, colour_width_);
   // Interpolation between a positive and a negative node needs both; value_at() clamps what comes
   // out.
@@ -133,7 +129,7 @@ RglTable::Normal RglTable::half_vector(const glm::vec3& wi, const glm::vec3& wo)
   const float phi = fast_atan2(ix * m.y - iy * m.x, ix * m.x + iy * m.y);
   const float m_xy = std::sqrt(m.x * m.x + m.y * m.y);
   const float u_theta = u_theta_of(fast_atan2(m_xy, m.z));
-  const float u_phi = phi * (0.5f / pi<float>) + 0.5f;
+  const float u_phi = phi * (0.5f / pi<float>)+0.5f;
   return {u_theta, u_phi, area_of_normals(u_theta, m_xy / glm::length(m))};
 }
 
@@ -141,8 +137,7 @@ glm::vec3 RglTable::colour_at(const Lerp& slice, float x, float y) const noexcep
   const Lerp lx = lerp_clamped(x * static_cast<float>(colour_width_ - 1), colour_width_);
   const Lerp ly = lerp_clamped(y * static_cast<float>(colour_height_ - 1), colour_height_);
   const auto row = [&](int s, int j) {
-    const glm::vec3* cells =
-        colour_.data() + (static_cast<std::ptrdiff_t>(s) * colour_height_ + j) * colour_width_;
+    const glm::vec3* cells = colour_.data() + (static_cast<std::ptrdiff_t>(s) * colour_height_ + j) * colour_width_;
     return lerp(cells[lx.lo], cells[lx.hi], lx.t);
   };
   return lerp(lerp(row(slice.lo, ly.lo), row(slice.lo, ly.hi), ly.t),
@@ -160,14 +155,14 @@ float RglTable::measured(const glm::vec3& wi, const glm::vec3& wo) const noexcep
                          lerp_clamped(place.x * static_cast<float>(colour_width_ - 1), colour_width_));
 }
 
-glm::vec3 RglTable::value_at(const Normal& normal, float theta_i, const Lerp& slice, float x,
-                             float y) const noexcept {
+glm::vec3 RglTable::value_at(const Normal& normal, float theta_i, const Lerp& slice, float x, float y) const noexcept {
   const glm::vec3 colour = glm::max(colour_at(slice, x, y), 0.0f);
   if (!jacobian_) return colour;
   const float area = sigma(theta_i);
   if (!(area > 0.0f)) return glm::vec3(0.0f);
   // A damaged file may hold an ndf and a sigma whose quotient no float holds.
-  const float factor = std::min(bilinear(ndf_, normal.u_theta, normal.u_phi) / (4.0f * area), std::numeric_limits<float>::max());
+  const float factor =
+      std::min(bilinear(ndf_, normal.u_theta, normal.u_phi) / (4.0f * area), std::numeric_limits<float>::max());
   return colour * factor;
 }
 
@@ -188,12 +183,10 @@ float RglTable::pdf(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
   const Normal normal = half_vector(wi, wo);
   const Warp2d::Point place = vndf_.invert(slice, normal.u_theta, normal.u_phi);
   const float cosine = 0.5f * glm::length(wi + wo);  // wi . m
-  return luminance_.eval(slice, place.x, place.y) * place.density /
-         (normal.jacobian * 4.0f * cosine);
+  return luminance_.eval(slice, place.x, place.y) * place.density / (normal.jacobian * 4.0f * cosine);
 }
 
-std::optional<RglTable::Sample> RglTable::sample(const glm::vec3& wi, float u1,
-                                                 float u2) const noexcept {
+std::optional<RglTable::Sample> RglTable::sample(const glm::vec3& wi, float u1, float u2) const noexcept {
   const float theta_i = theta_of(wi);
   const Lerp slice = slice_at(theta_i);
   const Warp2d::Point place = luminance_.sample(slice, u2, u1);
@@ -209,15 +202,14 @@ std::optional<RglTable::Sample> RglTable::sample(const glm::vec3& wi, float u1,
 
   const Normal normal{chart.x, chart.y, area_of_normals(chart.x, sine)};
   const float density = place.density * chart.density / (normal.jacobian * 4.0f * cosine);
-  // Where a density of the chain falls to 0 at an edge, what the warps say of a place on the edge is not what they say of
-  // the direction, which is rounded.
+  // Where a density of the chain falls to 0 at an edge, what the warps say of a place on the edge is not what they say
+  // of the direction, which is rounded.
   if (std::min({u1, 1.0f - u1, u2, 1.0f - u2}) < edge) {
     const float rounded = pdf(wi, wo);
     if (!(rounded > 0.0f)) return std::nullopt;
     return Sample{wo, rounded, eval(wi, wo)};
   }
-  return Sample{wo, density,
-                value_at(normal, theta_i, slice, place.x, place.y) / std::max(wo.z, min_cosine)};
+  return Sample{wo, density, value_at(normal, theta_i, slice, place.x, place.y) / std::max(wo.z, min_cosine)};
 }
 
 }  // namespace gonio

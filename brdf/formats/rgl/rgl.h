@@ -1,15 +1,16 @@
 #pragma once
 
-#include <gonio/brdf/formats/cell_policies.h>
-#include <gonio/brdf/formats/measured_cells.h>
-#include <gonio/mapping/base/problem.h>
-#include <gonio/brdf/formats/rgl/warp2d.h>
-
 #include <filesystem>
-#include <glm/vec3.hpp>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include <glm/vec3.hpp>
+
+#include <gonio/brdf/formats/cell_policies.h>
+#include <gonio/brdf/formats/measured_cells.h>
+#include <gonio/brdf/formats/rgl/warp2d.h>
+#include <gonio/mapping/base/problem.h>
 
 namespace gonio {
 
@@ -108,8 +109,7 @@ class RglTable {
   Lerp slice_at(float theta) const noexcept;
   Normal half_vector(const glm::vec3& wi, const glm::vec3& wo) const noexcept;
   glm::vec3 colour_at(const Lerp& slice, float x, float y) const noexcept;
-  glm::vec3 value_at(const Normal& normal, float theta_i, const Lerp& slice, float x,
-                     float y) const noexcept;
+  glm::vec3 value_at(const Normal& normal, float theta_i, const Lerp& slice, float x, float y) const noexcept;
 
   CellCounts density_counts_;
   std::vector<float> theta_i_;

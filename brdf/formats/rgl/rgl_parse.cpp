@@ -1,24 +1,22 @@
-#include <gonio/mapping/base/bytes.h>
-#include <gonio/brdf/formats/rgl/rgl.h>
-#include <gonio/brdf/formats/rgl/spectrum.h>
-#include <gonio/brdf/formats/rgl/tensor_file.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include <gonio/brdf/formats/rgl/rgl.h>
+#include <gonio/brdf/formats/rgl/spectrum.h>
+#include <gonio/brdf/formats/rgl/tensor_file.h>
+#include <gonio/mapping/base/bytes.h>
 
 namespace gonio {
 namespace {
 
 constexpr double half_pi = 1.57079632679489661923;
-constexpr const char* anisotropic =
-    "at most 2 with the same data: only isotropic materials are supported";
+constexpr const char* anisotropic = "at most 2 with the same data: only isotropic materials are supported";
 
 // Reads the fields one by one and collects everything that is wrong with them.
 class Parser {
  public:
-  Parser(const TensorFile& file, std::vector<Problem>& problems)
-      : file_(file), problems_(problems) {}
+  Parser(const TensorFile& file, std::vector<Problem>& problems) : file_(file), problems_(problems) {}
 
   RglFile parse() {
     RglFile result;
@@ -43,8 +41,7 @@ class Parser {
   static constexpr std::uint64_t side = any - 1;
   static constexpr std::uint64_t max_side = 1u << 14;
 
-  void report(const std::string& field, const std::string& found, const std::string& expected,
-              bool fatal = true) {
+  void report(const std::string& field, const std::string& found, const std::string& expected, bool fatal = true) {
     problems_.push_back({field, found, expected, fatal});
   }
 
@@ -63,9 +60,7 @@ class Parser {
       expected += (i > 0 ? ", " : "") + text;
       if (!fits) continue;
       const std::uint64_t n = field->shape[i];
-      fits = shape[i] == any    ? n >= 1 && n <= max_side
-             : shape[i] == side ? n >= 2 && n <= max_side
-                                : n == shape[i];
+      fits = shape[i] == any ? n >= 1 && n <= max_side : shape[i] == side ? n >= 2 && n <= max_side : n == shape[i];
     }
     if (fits) return field;
     report(name, field == nullptr ? "no such field" : to_string(*field), expected + "]");
@@ -75,8 +70,7 @@ class Parser {
   std::string text(const std::string& name) {
     const TensorFile::Field* field = file_.find(name);
     if (field == nullptr || field->type != TensorFile::Type::u8 || field->shape.size() != 1) {
-      report(name, field == nullptr ? "no such field" : to_string(*field), "text: u8 [length]",
-             false);
+      report(name, field == nullptr ? "no such field" : to_string(*field), "text: u8 [length]", false);
       return "";
     }
     const std::vector<std::uint8_t> octets = file_.octets(*field);
@@ -98,8 +92,7 @@ class Parser {
       if (!(theta >= 0.0f && theta <= half_pi + 1e-3)) {
         report(name, std::to_string(theta), "0 to pi/2");
       } else if (i > 0 && !(theta > result.theta_i[i - 1])) {
-        report(name, std::to_string(theta),
-               "more than its predecessor " + std::to_string(result.theta_i[i - 1]));
+        report(name, std::to_string(theta), "more than its predecessor " + std::to_string(result.theta_i[i - 1]));
       }
     }
   }
@@ -130,8 +123,7 @@ class Parser {
     // These two may be given for a single azimuth row as well.
     const TensorFile::Field* field = require(name, TensorFile::Type::f32, {any, side});
     if (field == nullptr) return {};
-    RglFile::Grid grid{1, static_cast<int>(field->shape[0]), static_cast<int>(field->shape[1]),
-                       file_.floats(*field)};
+    RglFile::Grid grid{1, static_cast<int>(field->shape[0]), static_cast<int>(field->shape[1]), file_.floats(*field)};
     check_density(name, grid.values);
     return grid;
   }
@@ -151,20 +143,17 @@ class Parser {
   }
 
   RglFile::Grid read_density(const std::string& name) {
-    const TensorFile::Field* field =
-        require(name, TensorFile::Type::f32, {n_phi_, n_theta_, side, side});
+    const TensorFile::Field* field = require(name, TensorFile::Type::f32, {n_phi_, n_theta_, side, side});
     if (field == nullptr) return {};
-    RglFile::Grid grid{static_cast<int>(n_theta_), static_cast<int>(field->shape[2]),
-                       static_cast<int>(field->shape[3]), file_.floats(*field)};
+    RglFile::Grid grid{static_cast<int>(n_theta_), static_cast<int>(field->shape[2]), static_cast<int>(field->shape[3]),
+                       file_.floats(*field)};
     drop_second_phi(name, grid.values);
     check_density(name, grid.values);
     const std::size_t size = grid.values.size() / n_theta_;
     for (std::size_t s = 0; s < n_theta_; ++s) {
       const auto begin = grid.values.begin() + static_cast<std::ptrdiff_t>(s * size);
-      if (std::all_of(begin, begin + static_cast<std::ptrdiff_t>(size),
-                      [](float value) { return value <= 0.0f; })) {
-        report(name + "[" + std::to_string(s) + "]", "nothing above 0", "a density (taken as uniform)",
-               false);
+      if (std::all_of(begin, begin + static_cast<std::ptrdiff_t>(size), [](float value) { return value <= 0.0f; })) {
+        report(name + "[" + std::to_string(s) + "]", "nothing above 0", "a density (taken as uniform)", false);
       }
     }
     return grid;
@@ -216,10 +205,8 @@ class Parser {
       }
     }
     if (wavelengths.front() > 430.0f || wavelengths.back() < 650.0f) {
-      report(
-          "wavelengths",
-          std::to_string(wavelengths.front()) + " to " + std::to_string(wavelengths.back()) + " nm",
-          "at least 430 to 650 nm, to find a colour");
+      report("wavelengths", std::to_string(wavelengths.front()) + " to " + std::to_string(wavelengths.back()) + " nm",
+             "at least 430 to 650 nm, to find a colour");
       return {};
     }
     return rec709_weights(wavelengths);

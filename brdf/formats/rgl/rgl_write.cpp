@@ -1,3 +1,9 @@
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include <glm/geometric.hpp>
+
 #include <gonio/brdf/formats/repair.h>
 #include <gonio/brdf/formats/rgl/rgl_write.h>
 #include <gonio/brdf/formats/rgl/spectrum.h>
@@ -5,18 +11,13 @@
 #include <gonio/mapping/base/atomic_file.h>
 #include <gonio/mapping/base/error.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <glm/geometric.hpp>
-
 namespace gonio {
 namespace {
 
 // [slice][channel][height][width] of value(cell, channel).
 template <class Value>
-std::vector<float> planes(const std::vector<glm::vec3>& cells, std::size_t slices,
-                          std::size_t channels, const Value& value) {
+std::vector<float> planes(const std::vector<glm::vec3>& cells, std::size_t slices, std::size_t channels,
+                          const Value& value) {
   const std::size_t size = cells.size() / slices;
   std::vector<float> values;
   values.reserve(cells.size() * channels);
@@ -36,9 +37,8 @@ std::vector<glm::vec3> repaired_colour(const RglFile& file) {
   const std::size_t n = file.theta_i.size();
   const auto height = static_cast<std::size_t>(file.colour_height);
   const auto width = static_cast<std::size_t>(file.colour_width);
-  repair_cells(
-      cells, kinds, {},
-      {{n * height, width, 1, false}, {n, height, width, false}, {1, n, height * width, false}});
+  repair_cells(cells, kinds, {},
+               {{n * height, width, 1, false}, {n, height, width, false}, {1, n, height * width, false}});
   return cells;
 }
 
@@ -53,16 +53,14 @@ std::vector<float> normalised(const RglFile::Grid& grid) {
     for (int j = 0; j < grid.height; ++j) {
       for (int i = 0; i < grid.width; ++i) {
         // The trapezoid rule is the integral of the bilinear density.
-        const double area =
-            (i % (grid.width - 1) == 0 ? 0.5 : 1.0) * (j % (grid.height - 1) == 0 ? 0.5 : 1.0);
+        const double area = (i % (grid.width - 1) == 0 ? 0.5 : 1.0) * (j % (grid.height - 1) == 0 ? 0.5 : 1.0);
         sum += area * slice[j * grid.width + i];
       }
     }
     const double integral = sum / ((grid.width - 1.0) * (grid.height - 1.0));
     if (std::abs(integral - 1) < rounding) continue;
-    std::transform(slice, slice + size, slice, [&](float value) {
-      return integral > 0 ? static_cast<float>(value / integral) : 1.0f;
-    });
+    std::transform(slice, slice + size, slice,
+                   [&](float value) { return integral > 0 ? static_cast<float>(value / integral) : 1.0f; });
   }
   return values;
 }
@@ -72,8 +70,7 @@ void add_grid(TensorWriter& writer, const std::string& name, const RglFile::Grid
   std::vector<float> values = grid.values;
   const int rows = std::max(grid.height, 2);
   if (grid.height == 1) values.insert(values.end(), grid.values.begin(), grid.values.end());
-  writer.add(name, {static_cast<std::uint64_t>(rows), static_cast<std::uint64_t>(grid.width)},
-             values);
+  writer.add(name, {static_cast<std::uint64_t>(rows), static_cast<std::uint64_t>(grid.width)}, values);
 }
 
 void add_slices(TensorWriter& writer, const std::string& name, const RglFile::Grid& grid) {
@@ -88,18 +85,13 @@ void add_slices(TensorWriter& writer, const std::string& name, const RglFile::Gr
 void write_rgl(const std::filesystem::path& path, const RglFile& stored, RglColour colour) {
   RglFile file = stored;
   repair_densities(file, {});
-  const auto text = [](int height, int width) {
-    return std::to_string(height) + " x " + std::to_string(width);
-  };
+  const auto text = [](int height, int width) { return std::to_string(height) + " x " + std::to_string(width); };
   const RglFile::Grid& grid = file.luminance;
-  if (grid.height != grid.width || file.colour_height != grid.height ||
-      file.colour_width != grid.width) {
-    throw Error(path.string() + ": luminance and rgb: found " + text(grid.height, grid.width) +
-                " and " + text(file.colour_height, file.colour_width) +
-                ", expected squares of one size, as other readers do");
+  if (grid.height != grid.width || file.colour_height != grid.height || file.colour_width != grid.width) {
+    throw Error(path.string() + ": luminance and rgb: found " + text(grid.height, grid.width) + " and " +
+                text(file.colour_height, file.colour_width) + ", expected squares of one size, as other readers do");
   }
-  if (!file.jacobian)
-    throw Error(path.string() + ": jacobian: found 0, expected 1: pbrt-v4 does not read it");
+  if (!file.jacobian) throw Error(path.string() + ": jacobian: found 0, expected 1: pbrt-v4 does not read it");
   const auto n = static_cast<std::uint64_t>(file.theta_i.size());
   const auto side = static_cast<std::uint64_t>(grid.width);
   TensorWriter writer;
@@ -111,17 +103,13 @@ void write_rgl(const std::filesystem::path& path, const RglFile& stored, RglColo
   add_slices(writer, "vndf", file.vndf);
   add_slices(writer, "luminance", file.luminance);
   writer.add("rgb", {1, n, 3, side, side},
-             planes(file.colour, n, 3, [](const glm::vec3& cell, std::size_t k) {
-               return cell[static_cast<int>(k)];
-             }));
+             planes(file.colour, n, 3, [](const glm::vec3& cell, std::size_t k) { return cell[static_cast<int>(k)]; }));
   if (colour == RglColour::rgb_and_spectra) {
     const RgbSpectra spectra = rgb_spectra();
     const std::size_t channels = spectra.wavelengths.size();
-    writer.add(
-        "spectra", {1, n, channels, side, side},
-        planes(repaired_colour(file), n, channels, [&](const glm::vec3& cell, std::size_t k) {
-          return glm::dot(spectra.reflectance[k], cell);
-        }));
+    writer.add("spectra", {1, n, channels, side, side},
+               planes(repaired_colour(file), n, channels,
+                      [&](const glm::vec3& cell, std::size_t k) { return glm::dot(spectra.reflectance[k], cell); }));
     writer.add("wavelengths", {channels}, spectra.wavelengths);
   }
   writer.add("jacobian", std::string(1, '\1'));

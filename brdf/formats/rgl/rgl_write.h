@@ -1,14 +1,14 @@
 #pragma once
 
-#include <gonio/brdf/formats/rgl/rgl.h>
-
 #include <filesystem>
+
+#include <gonio/brdf/formats/rgl/rgl.h>
 
 namespace gonio {
 
 /// What an RGL file says of colour beside the densities.
 enum class RglColour {
-  rgb,            ///< `rgb` alone: what Mitsuba 3 needs in its RGB variants
+  rgb,             ///< `rgb` alone: what Mitsuba 3 needs in its RGB variants
   rgb_and_spectra  ///< also `spectra` at `wavelengths` (rgb_spectra()): what pbrt-v4 and Mitsuba 3 in its
                    ///< spectral variants need; the RGB variants refuse a file with them
 };
@@ -24,7 +24,6 @@ enum class RglColour {
 /// @throws Error if the path cannot be written; if spectra are wanted and no colour is finite; and if
 ///   luminance and colours are not squares of one size, or jacobian is false, since those readers refuse
 ///   the one and pbrt-v4 ignores the other.
-void write_rgl(const std::filesystem::path& path, const RglFile& file,
-               RglColour colour = RglColour::rgb_and_spectra);
+void write_rgl(const std::filesystem::path& path, const RglFile& file, RglColour colour = RglColour::rgb_and_spectra);
 
 }  // namespace gonio

@@ -1,18 +1,17 @@
-#include <gonio/brdf/formats/rgl/spectrum.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include <gonio/brdf/formats/rgl/spectrum.h>
 
 namespace gonio {
 namespace {
 
 // CIE standard illuminant D65, relative power every 10 nm from 380 to 780 nm (CIE 15).
-constexpr double d65[] = {49.9755, 54.6482, 82.7549, 91.4860, 93.4318, 86.6823, 104.865,
-                          117.008, 117.812, 114.861, 115.923, 108.811, 109.354, 107.802,
-                          104.790, 107.689, 104.405, 104.046, 100.000, 96.3342, 95.7880,
-                          88.6856, 90.0062, 89.5991, 87.6987, 83.2886, 83.6992, 80.0268,
-                          80.2146, 82.2778, 78.2842, 69.7213, 71.6091, 74.3490, 61.6040,
-                          69.8856, 75.0870, 63.5927, 46.4182, 66.8054, 63.3828};
+constexpr double d65[] = {49.9755, 54.6482, 82.7549, 91.4860, 93.4318, 86.6823, 104.865, 117.008, 117.812,
+                          114.861, 115.923, 108.811, 109.354, 107.802, 104.790, 107.689, 104.405, 104.046,
+                          100.000, 96.3342, 95.7880, 88.6856, 90.0062, 89.5991, 87.6987, 83.2886, 83.6992,
+                          80.0268, 80.2146, 82.2778, 78.2842, 69.7213, 71.6091, 74.3490, 61.6040, 69.8856,
+                          75.0870, 63.5927, 46.4182, 66.8054, 63.3828};
 constexpr int first_nm = 380, last_nm = 780;
 
 double illuminant(int nm) {
@@ -26,15 +25,14 @@ double lobe(double nm, double centre, double below, double above) {
 }
 
 glm::dvec3 xyz(double nm) {
-  return {1.056 * lobe(nm, 599.8, 37.9, 31.0) + 0.362 * lobe(nm, 442.0, 16.0, 26.7) -
-              0.065 * lobe(nm, 501.1, 20.4, 26.2),
-          0.821 * lobe(nm, 568.8, 46.9, 40.5) + 0.286 * lobe(nm, 530.9, 16.3, 31.1),
-          1.217 * lobe(nm, 437.0, 11.8, 36.0) + 0.681 * lobe(nm, 459.0, 26.0, 13.8)};
+  return {
+      1.056 * lobe(nm, 599.8, 37.9, 31.0) + 0.362 * lobe(nm, 442.0, 16.0, 26.7) - 0.065 * lobe(nm, 501.1, 20.4, 26.2),
+      0.821 * lobe(nm, 568.8, 46.9, 40.5) + 0.286 * lobe(nm, 530.9, 16.3, 31.1),
+      1.217 * lobe(nm, 437.0, 11.8, 36.0) + 0.681 * lobe(nm, 459.0, 26.0, 13.8)};
 }
 
 glm::dvec3 rec709(const glm::dvec3& c) {
-  return {3.2404542 * c.x - 1.5371385 * c.y - 0.4985314 * c.z,
-          -0.9692660 * c.x + 1.8760108 * c.y + 0.0415560 * c.z,
+  return {3.2404542 * c.x - 1.5371385 * c.y - 0.4985314 * c.z, -0.9692660 * c.x + 1.8760108 * c.y + 0.0415560 * c.z,
           0.0556434 * c.x - 0.2040259 * c.y + 1.0572252 * c.z};
 }
 
@@ -44,8 +42,7 @@ std::vector<glm::vec3> rec709_weights(const std::vector<float>& wavelengths) {
   std::vector<glm::dvec3> weights(wavelengths.size(), glm::dvec3(0.0));
   glm::dvec3 sum(0.0);
   for (int nm = first_nm; nm <= last_nm; ++nm) {
-    const auto above =
-        std::upper_bound(wavelengths.begin(), wavelengths.end(), static_cast<float>(nm));
+    const auto above = std::upper_bound(wavelengths.begin(), wavelengths.end(), static_cast<float>(nm));
     if (above == wavelengths.begin()) continue;
     const auto k = static_cast<std::size_t>(above - wavelengths.begin());
     if (above == wavelengths.end() && static_cast<float>(nm) > wavelengths.back()) continue;

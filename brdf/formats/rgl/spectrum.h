@@ -1,7 +1,8 @@
 #pragma once
 
-#include <glm/vec3.hpp>
 #include <vector>
+
+#include <glm/vec3.hpp>
 
 namespace gonio {
 

@@ -1,24 +1,22 @@
-#include <gonio/mapping/base/bytes.h>
-#include <gonio/brdf/formats/rgl/tensor_file.h>
-
 #include <algorithm>
 #include <cstring>
+
+#include <gonio/brdf/formats/rgl/tensor_file.h>
+#include <gonio/mapping/base/bytes.h>
 
 namespace gonio {
 namespace {
 
 constexpr char magic[] = "tensor_file";  // 12 bytes with its 0
 constexpr std::size_t type_size[] = {0, 1, 1, 2, 2, 4, 4, 8, 8, 2, 4, 8};
-constexpr const char* type_name[] = {"",    "u8",  "i8",  "u16", "i16", "u32",
-                                     "i32", "u64", "i64", "f16", "f32", "f64"};
+constexpr const char* type_name[] = {"", "u8", "i8", "u16", "i16", "u32", "i32", "u64", "i64", "f16", "f32", "f64"};
 constexpr std::uint16_t max_dimensions = 16;
 
 // No file is larger; a field that would end beyond is damaged, not cut off.
 constexpr std::uint64_t max_bytes = std::uint64_t{1} << 48;
 
 // Number of values, or false if they are more than `limit` (which also covers overflow).
-bool count_values(const std::vector<std::uint64_t>& shape, std::uint64_t limit,
-                  std::size_t& count) {
+bool count_values(const std::vector<std::uint64_t>& shape, std::uint64_t limit, std::size_t& count) {
   std::uint64_t product = 1;
   for (const std::uint64_t n : shape) {
     if (n != 0 && product > limit / n) return false;
@@ -36,14 +34,12 @@ std::string shape_text(const std::vector<std::uint64_t>& shape) {
 
 }  // namespace
 
-TensorFile::TensorFile(std::string bytes, std::vector<Problem>& problems)
-    : bytes_(std::move(bytes)) {
+TensorFile::TensorFile(std::string bytes, std::vector<Problem>& problems) : bytes_(std::move(bytes)) {
   ByteReader reader(bytes_);
   char found_magic[sizeof(magic)];
   std::uint8_t version[2];
   std::uint32_t n_fields;
-  if (!reader.read(found_magic, sizeof(magic)) ||
-      std::memcmp(found_magic, magic, sizeof(magic)) != 0) {
+  if (!reader.read(found_magic, sizeof(magic)) || std::memcmp(found_magic, magic, sizeof(magic)) != 0) {
     problems.push_back({"magic", "something else", "\"tensor_file\"", true});
     return;
   }
@@ -52,9 +48,8 @@ TensorFile::TensorFile(std::string bytes, std::vector<Problem>& problems)
     return;
   }
   if (version[0] != 1) {
-    problems.push_back({"container version",
-                        std::to_string(version[0]) + "." + std::to_string(version[1]), "1.0",
-                        true});
+    problems.push_back(
+        {"container version", std::to_string(version[0]) + "." + std::to_string(version[1]), "1.0", true});
     return;
   }
   std::uint64_t needed = 0;  // bytes, to the end of the field that ends last
@@ -68,12 +63,11 @@ TensorFile::TensorFile(std::string bytes, std::vector<Problem>& problems)
     bool complete = reader.read(name_length);
     if (complete) {
       field.name.resize(name_length);
-      complete = reader.read(field.name.data(), name_length) && reader.read(n_dimensions) &&
-                 reader.read(type) && reader.read(offset);
+      complete = reader.read(field.name.data(), name_length) && reader.read(n_dimensions) && reader.read(type) &&
+                 reader.read(offset);
     }
     if (complete && n_dimensions > max_dimensions) {
-      problems.push_back({which + " (" + field.name + ")",
-                          std::to_string(n_dimensions) + " dimensions",
+      problems.push_back({which + " (" + field.name + ")", std::to_string(n_dimensions) + " dimensions",
                           "at most " + std::to_string(max_dimensions), true});
       return;
     }
@@ -94,9 +88,8 @@ TensorFile::TensorFile(std::string bytes, std::vector<Problem>& problems)
     field.type = static_cast<Type>(type);
     if (offset > max_bytes || !count_values(field.shape, (max_bytes - offset) / type_size[type], field.count)) {
       problems.push_back({field.name,
-                          "shape " + shape_text(field.shape) + " of " + type_name[type] +
-                              " at byte " + std::to_string(offset) + " of " +
-                              std::to_string(bytes_.size()),
+                          "shape " + shape_text(field.shape) + " of " + type_name[type] + " at byte " +
+                              std::to_string(offset) + " of " + std::to_string(bytes_.size()),
                           "values that lie within the file", true});
       continue;
     }
@@ -120,8 +113,7 @@ TensorFile::TensorFile(std::string bytes, std::vector<Problem>& problems)
 }
 
 const TensorFile::Field* TensorFile::find(const std::string& name) const noexcept {
-  const auto it = std::find_if(fields_.begin(), fields_.end(),
-                               [&](const Field& field) { return field.name == name; });
+  const auto it = std::find_if(fields_.begin(), fields_.end(), [&](const Field& field) { return field.name == name; });
   return it == fields_.end() ? nullptr : &*it;
 }
 

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <gonio/mapping/base/problem.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
+
+#include <gonio/mapping/base/problem.h>
 
 namespace gonio {
 

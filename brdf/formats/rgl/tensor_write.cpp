@@ -15,16 +15,13 @@ void put(std::string& bytes, const T& value) {
 
 }  // namespace
 
-void TensorWriter::add(const std::string& name, std::vector<std::uint64_t> shape,
-                       const std::vector<float>& values) {
+void TensorWriter::add(const std::string& name, std::vector<std::uint64_t> shape, const std::vector<float>& values) {
   fields_.push_back({name, static_cast<std::uint8_t>(TensorFile::Type::f32), std::move(shape),
-                     std::string(reinterpret_cast<const char*>(values.data()),
-                                 values.size() * sizeof(float))});
+                     std::string(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float))});
 }
 
 void TensorWriter::add(const std::string& name, const std::string& octets) {
-  fields_.push_back(
-      {name, static_cast<std::uint8_t>(TensorFile::Type::u8), {octets.size()}, octets});
+  fields_.push_back({name, static_cast<std::uint8_t>(TensorFile::Type::u8), {octets.size()}, octets});
 }
 
 void TensorWriter::write(std::ostream& stream) const {

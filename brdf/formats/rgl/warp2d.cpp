@@ -1,7 +1,7 @@
-#include <gonio/brdf/formats/rgl/warp2d.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include <gonio/brdf/formats/rgl/warp2d.h>
 
 namespace gonio {
 namespace {
@@ -97,8 +97,7 @@ Warp2d::Point Warp2d::sample(const Lerp& slice, float u, float v) const noexcept
   const int last = width_ - 1;
   const float mass_0 = lerp(lo[last], hi[last], slice.t);
   const float mass_1 = lerp(lo[width_ + last], hi[width_ + last], slice.t);
-  const float ty =
-      invert_linear(mass_0, mass_1, (v - marginal(iy)) * static_cast<float>(height_ - 1));
+  const float ty = invert_linear(mass_0, mass_1, (v - marginal(iy)) * static_cast<float>(height_ - 1));
 
   const auto blend = [&](const float* a, const float* b, int x) {
     return lerp(lerp(a[x], a[width_ + x], ty), lerp(b[x], b[width_ + x], ty), slice.t);
@@ -128,14 +127,11 @@ Warp2d::Point Warp2d::invert(const Lerp& slice, float x, float y) const noexcept
   const float d0 = blend(density_lo, density_hi, cx.i);
   const float d1 = blend(density_lo, density_hi, cx.i + 1);
   const float mass = blend(lo, hi, last);
-  const float below =
-      blend(lo, hi, cx.i) + integrate_linear(d0, d1, cx.t) / static_cast<float>(last);
+  const float below = blend(lo, hi, cx.i) + integrate_linear(d0, d1, cx.t) / static_cast<float>(last);
 
   const float mass_0 = lerp(lo[last], hi[last], slice.t);
   const float mass_1 = lerp(lo[width_ + last], hi[width_ + last], slice.t);
-  const auto marginal = [&](int s) {
-    return marginal_[static_cast<std::size_t>(s) * height_ + cy.i];
-  };
+  const auto marginal = [&](int s) { return marginal_[static_cast<std::size_t>(s) * height_ + cy.i]; };
   const float v = lerp(marginal(slice.lo), marginal(slice.hi), slice.t) +
                   integrate_linear(mass_0, mass_1, cy.t) / static_cast<float>(height_ - 1);
   // A line without mass is never sampled; any u would do.

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <gonio/brdf/formats/interpolate.h>
-
 #include <vector>
+
+#include <gonio/brdf/formats/interpolate.h>
 
 namespace gonio {
 
@@ -42,7 +42,7 @@ class Warp2d {
   int height_ = 0, width_ = 0;
   std::vector<float> density_;      // [slice][y][x]
   std::vector<float> conditional_;  // integral of density_ over x from 0, same shape
-  std::vector<float> marginal_;  // [slice][y]: integral over y of the last column of conditional_
+  std::vector<float> marginal_;     // [slice][y]: integral over y of the last column of conditional_
 };
 
 }  // namespace gonio

@@ -1,13 +1,12 @@
-#include <gonio/brdf/ndf/image/disk_image.h>
-
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
 
-#include <gonio/mapping/base/parallel.h>
-#include <gonio/mapping/base/error.h>
+#include <gonio/brdf/ndf/image/disk_image.h>
 #include <gonio/brdf/ndf/image/solid_angle.h>
+#include <gonio/mapping/base/error.h>
+#include <gonio/mapping/base/parallel.h>
 
 namespace gonio {
 namespace {
@@ -90,13 +89,15 @@ bool pixel_direction(int size, int row, int column, Vec3<double>& w) noexcept {
 
 DiskImage rasterise(int size, const std::function<double(const Vec3<double>&)>& density) {
   if (size < 1 || size > max_disk_image_side)
-    throw Error("disk image: size: found " + std::to_string(size) + ", expected 1 to " + std::to_string(max_disk_image_side));
+    throw Error("disk image: size: found " + std::to_string(size) + ", expected 1 to " +
+                std::to_string(max_disk_image_side));
   DiskImage image(size);
   parallel_for(static_cast<std::size_t>(size), [&](std::size_t row) {
     for (int column = 0; column < size; ++column) {
       const PixelBounds p = pixel_bounds(size, static_cast<int>(row), column);
       const Place place = place_of(p);
-      if (place != Place::outside) image.at(static_cast<int>(row), column) = static_cast<float>(mean(p, place, density));
+      if (place != Place::outside)
+        image.at(static_cast<int>(row), column) = static_cast<float>(mean(p, place, density));
     }
   });
   return image;
@@ -140,8 +141,8 @@ double normalise(DiskImage& ndf) {
       if (place_of(pixel_bounds(ndf.size, row, column)) == Place::outside) {
         value = 0;
       } else if (!(value >= 0 && std::isfinite(value))) {
-        throw Error("normal distribution: row " + std::to_string(row) + ", column " + std::to_string(column) + ": found " +
-                    std::to_string(value) + ", expected a finite value from 0");
+        throw Error("normal distribution: row " + std::to_string(row) + ", column " + std::to_string(column) +
+                    ": found " + std::to_string(value) + ", expected a finite value from 0");
       }
     }
   const double before = projected_area(ndf);

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <gonio/mapping/charts/hemisphere.h>
-
 #include <cstddef>
 #include <functional>
 #include <vector>
+
+#include <gonio/mapping/charts/hemisphere.h>
 
 namespace gonio {
 

@@ -1,4 +1,4 @@
-#include <gonio/brdf/ndf/image/disk_image_file.h>
+#include <vector>
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
@@ -8,11 +8,10 @@
 #include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
 
-#include <vector>
-
-#include <gonio/mapping/base/atomic_file.h>
 #include <gonio/brdf/exr/check_attributes.h>
 #include <gonio/brdf/exr/stack_file.h>
+#include <gonio/brdf/ndf/image/disk_image_file.h>
+#include <gonio/mapping/base/atomic_file.h>
 #include <gonio/mapping/base/error.h>
 
 namespace gonio {
@@ -24,7 +23,8 @@ namespace {
 }
 
 Imf::Slice slice(std::vector<float>& pixels, int width) {
-  return Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(pixels.data()), sizeof(float), sizeof(float) * static_cast<std::size_t>(width));
+  return Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(pixels.data()), sizeof(float),
+                    sizeof(float) * static_cast<std::size_t>(width));
 }
 
 DiskImage load(const std::string& file) {
@@ -42,7 +42,8 @@ DiskImage load(const std::string& file) {
          "a square of at most " + std::to_string(max_disk_image_side) + " pixels");
   if (!input.isComplete()) fail(file, "content", "an incomplete image", "all its rows");
   const bool grey = header.channels().findChannel("Y") != nullptr;
-  const std::vector<std::string> channels = grey ? std::vector<std::string>{"Y"} : std::vector<std::string>{"R", "G", "B"};
+  const std::vector<std::string> channels =
+      grey ? std::vector<std::string>{"Y"} : std::vector<std::string>{"R", "G", "B"};
   const float weights[] = {grey ? 1.0f : 0.2126f, 0.7152f, 0.0722f};
   DiskImage image(static_cast<int>(width));
   for (std::size_t c = 0; c < channels.size(); ++c) {
@@ -52,7 +53,8 @@ DiskImage load(const std::string& file) {
     std::vector<float> pixels(image.values.size());
     // OpenEXR addresses pixels by their place in the data window.
     Imf::Slice place = slice(pixels, image.size);
-    place.base -= static_cast<std::ptrdiff_t>(place.xStride) * window.min.x + static_cast<std::ptrdiff_t>(place.yStride) * window.min.y;
+    place.base -= static_cast<std::ptrdiff_t>(place.xStride) * window.min.x +
+                  static_cast<std::ptrdiff_t>(place.yStride) * window.min.y;
     Imf::FrameBuffer buffer;
     buffer.insert(channels[c], place);
     input.setFrameBuffer(buffer);
@@ -73,7 +75,9 @@ void save_disk_image(const std::filesystem::path& path, const DiskImage& image, 
     header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
     header.insert("gonio:quantity", Imf::StringAttribute(quantity));
     header.insert("gonio:version", Imf::StringAttribute(GONIO_VERSION));
-    header.insert("gonio:layout", Imf::StringAttribute("the hemisphere on its disk z = 0: x to the right, y up, the circle touches the sides"));
+    header.insert(
+        "gonio:layout",
+        Imf::StringAttribute("the hemisphere on its disk z = 0: x to the right, y up, the circle touches the sides"));
     std::vector<float> pixels = image.values;
     Imf::FrameBuffer buffer;
     buffer.insert("Y", slice(pixels, image.size));

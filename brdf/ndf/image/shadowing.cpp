@@ -1,10 +1,9 @@
-#include <gonio/brdf/ndf/image/shadowing.h>
-
 #include <algorithm>
 #include <cmath>
 
-#include <gonio/mapping/base/parallel.h>
+#include <gonio/brdf/ndf/image/shadowing.h>
 #include <gonio/brdf/ndf/image/solid_angle.h>
+#include <gonio/mapping/base/parallel.h>
 
 namespace gonio {
 namespace {
@@ -59,7 +58,8 @@ double Shadowing::sigma_at(int azimuth, double sine, double cosine) const noexce
   const double at = backwards ? bin_of(cosine, sine) : bin_of(-cosine, sine);
   const int bin = std::min(static_cast<int>(at), bins - 1);
   const double t = at - bin;
-  const double u = line[bin].u + t * (line[bin + 1].u - line[bin].u), z = line[bin].z + t * (line[bin + 1].z - line[bin].z);
+  const double u = line[bin].u + t * (line[bin + 1].u - line[bin].u),
+               z = line[bin].z + t * (line[bin + 1].z - line[bin].z);
   return backwards ? cosine * z - sine * u : sine * (line[bins].u - u) + cosine * (line[bins].z - z);
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <gonio/brdf/ndf/image/disk_image.h>
-
 #include <vector>
+
+#include <gonio/brdf/ndf/image/disk_image.h>
 
 namespace gonio {
 

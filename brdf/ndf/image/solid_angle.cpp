@@ -1,9 +1,10 @@
-#include <gonio/brdf/ndf/image/solid_angle.h>
-
 #include <algorithm>
-#include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 #include <utility>
+
+#include <boost/math/quadrature/gauss.hpp>
+
+#include <gonio/brdf/ndf/image/solid_angle.h>
 
 namespace gonio {
 namespace {
@@ -41,7 +42,8 @@ constexpr double enough_for_4 = 88, enough_for_7 = 12.8, enough_for_15 = 3.3;
 /// The integral of f(t) over [start, start + length], f singular at t = `real` beyond it and at
 /// +-i `imaginary`.
 template <class Function>
-double integrate(const Function& f, double start, double length, double real, double imaginary, int depth = 0) noexcept {
+double integrate(const Function& f, double start, double length, double real, double imaginary,
+                 int depth = 0) noexcept {
   using boost::math::quadrature::gauss;
   if (!(length > 0)) return 0;
   const double rho = std::min(bernstein(real - start, 0, length), bernstein(-start, imaginary, length));
@@ -66,7 +68,7 @@ double by_quadrature(double x0, double x1, double y0, double y1) noexcept {
   const double inside = one_minus_squares(x0, y1);
   if (inside > 0) {  // columns that end at y1
     const double corner = one_minus_squares(x1, y1);
-    const double near = corner > 0 ? corner / (r1 + x1) : 0;                // r1 - x1
+    const double near = corner > 0 ? corner / (r1 + x1) : 0;  // r1 - x1
     const double width = corner > 0 ? x1 - x0 : inside / (r1 + x0);
     const double start = std::sqrt(near), end = std::sqrt(near + width);
     const auto columns = [&](double t) {
@@ -83,9 +85,7 @@ double by_quadrature(double x0, double x1, double y0, double y1) noexcept {
     const double far = inside > 0 ? strip / (r0 + r1) : one_minus_squares(x0, y0) / (r0 + x0);
     const double width = corner > 0 && !(inside > 0) ? x1 - x0 : far - near;
     const double start = std::sqrt(near), end = std::sqrt(near + width);
-    const auto columns = [&](double t) {
-      return 2 * t * std::atan2(t * std::sqrt(2 * r0 - t * t), y0);
-    };
+    const auto columns = [&](double t) { return 2 * t * std::atan2(t * std::sqrt(2 * r0 - t * t), y0); };
     sum += integrate(columns, start, width / (start + end), std::sqrt(2 * r0), std::sqrt(y0 * y0 / (1 + r0)));
   }
   return sum;
@@ -115,7 +115,8 @@ double half_disk(double x, double y) noexcept {
 double area(double x, double y) noexcept {
   if (one_minus_squares(x, y) >= 0) return x * y;
   return (x * std::sqrt((1 - x) * (1 + x)) + y * std::sqrt((1 - y) * (1 + y)) + std::asin(x) + std::asin(y) -
-          pi<double> / 2) / 2;
+          pi<double> / 2) /
+         2;
 }
 
 template <class Function>
@@ -159,7 +160,8 @@ Vec3<double> orthographic_normal_integral(double x0, double x1, double y0, doubl
   for_each_quadrant(x0, x1, y0, y1, [&](double sx, double sy, double left, double right, double low, double high) {
     sum.x -= sx * corners(half_disk, left, right, low, high) / 2;
     sum.y -= sy * corners(half_disk, low, high, left, right) / 2;
-    sum.z += one_minus_squares(right, high) >= 0 ? (right - left) * (high - low) : corners(area, left, right, low, high);
+    sum.z +=
+        one_minus_squares(right, high) >= 0 ? (right - left) * (high - low) : corners(area, left, right, low, high);
   });
   return sum;
 }

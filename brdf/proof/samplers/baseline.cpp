@@ -1,9 +1,8 @@
-#include <gonio/brdf/proof/samplers/baseline.h>
-#include <gonio/brdf/value/frame.h>
-
 #include <algorithm>
 #include <cmath>
 
+#include <gonio/brdf/proof/samplers/baseline.h>
+#include <gonio/brdf/value/frame.h>
 #include <gonio/mapping/base/error.h>
 #include <gonio/mapping/charts/hemisphere.h>
 
@@ -46,8 +45,7 @@ float CosineSampler::pdf(const glm::vec3& wi, const glm::vec3& wo) const noexcep
 
 RglSampler::RglSampler(std::shared_ptr<const BrdfTable> table)
     : table_(required_table(std::move(table), "RGL sampler")), rgl_(std::get_if<RglTable>(&table_->data())) {
-  if (!rgl_)
-    throw Error(table_->info().source + ": format: found " + table_->info().format + ", expected rgl");
+  if (!rgl_) throw Error(table_->info().source + ": format: found " + table_->info().format + ", expected rgl");
 }
 
 std::optional<BsdfSample> RglSampler::sample(const glm::vec3& wi, const glm::vec2& u) const noexcept {

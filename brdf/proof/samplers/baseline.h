@@ -15,7 +15,8 @@ namespace gonio {
 class UniformSampler {
  public:
   /// @throws Error if `table` is null.
-  explicit UniformSampler(std::shared_ptr<const BrdfTable> table) : table_(required_table(std::move(table), "uniform sampler")) {}
+  explicit UniformSampler(std::shared_ptr<const BrdfTable> table)
+      : table_(required_table(std::move(table), "uniform sampler")) {}
   std::optional<BsdfSample> sample(const glm::vec3& wi, const glm::vec2& u) const noexcept;
   float pdf(const glm::vec3& wi, const glm::vec3& wo) const noexcept;
   glm::vec3 eval(const glm::vec3& wi, const glm::vec3& wo) const noexcept { return table_->eval(wi, wo); }
@@ -29,7 +30,8 @@ class UniformSampler {
 class CosineSampler {
  public:
   /// @throws Error if `table` is null.
-  explicit CosineSampler(std::shared_ptr<const BrdfTable> table) : table_(required_table(std::move(table), "cosine sampler")) {}
+  explicit CosineSampler(std::shared_ptr<const BrdfTable> table)
+      : table_(required_table(std::move(table), "cosine sampler")) {}
   std::optional<BsdfSample> sample(const glm::vec3& wi, const glm::vec2& u) const noexcept;
   float pdf(const glm::vec3& wi, const glm::vec3& wo) const noexcept;
   glm::vec3 eval(const glm::vec3& wi, const glm::vec3& wo) const noexcept { return table_->eval(wi, wo); }

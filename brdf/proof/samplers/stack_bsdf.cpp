@@ -1,8 +1,7 @@
-#include <gonio/brdf/proof/samplers/stack_bsdf.h>
-
 #include <algorithm>
 #include <cmath>
 
+#include <gonio/brdf/proof/samplers/stack_bsdf.h>
 #include <gonio/brdf/value/frame.h>
 #include <gonio/mapping/base/error.h>
 
@@ -10,7 +9,8 @@ namespace gonio {
 
 StackBsdf::StackBsdf(const BsdfData& data, std::shared_ptr<const BrdfTable> table)
     : stack_(sampled_stack(data)), colour_(table ? Colour() : data.colour), table_(std::move(table)) {
-  if (!table_ && colour_.empty()) throw Error("stack BSDF: f_r: found neither a table nor a colour, expected one of them");
+  if (!table_ && colour_.empty())
+    throw Error("stack BSDF: f_r: found neither a table nor a colour, expected one of them");
 }
 
 std::optional<BsdfSample> StackBsdf::sample(const glm::vec3& wi, const glm::vec2& u) const noexcept {
@@ -20,7 +20,8 @@ std::optional<BsdfSample> StackBsdf::sample(const glm::vec3& wi, const glm::vec2
   if (!(drawn.pdf > 0 && drawn.wo.z > 0)) return std::nullopt;
   const glm::vec3 wo = frame.to_surface(drawn.wo);
   if (table_) return BsdfSample{wo, drawn.pdf, table_->eval(wi, wo) * (wo.z / drawn.pdf)};
-  return BsdfSample{wo, drawn.pdf, colour_.eval(frame.theta_i, {u.x, u.y}) * std::min(drawn.wo.z / Colour::min_cosine, 1.0f)};
+  return BsdfSample{wo, drawn.pdf,
+                    colour_.eval(frame.theta_i, {u.x, u.y}) * std::min(drawn.wo.z / Colour::min_cosine, 1.0f)};
 }
 
 float StackBsdf::pdf(const glm::vec3& wi, const glm::vec3& wo) const noexcept {

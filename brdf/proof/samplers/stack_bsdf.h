@@ -1,9 +1,10 @@
 #pragma once
 
-#include <glm/vec2.hpp>
-#include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 
 #include <gonio/brdf/table/table.h>
 #include <gonio/brdf/value/bsdf_data.h>
@@ -11,10 +12,11 @@
 
 namespace gonio {
 
-/// A Bsdf in plain scalar code, by Stack<float> and Colour::eval(): what Bsdf is compared with, and the one that samples mixtures,
-/// too. The interface, the frame and what happens below the horizon are those of Bsdf.
+/// A Bsdf in plain scalar code, by Stack<float> and Colour::eval(): what Bsdf is compared with, and the one that
+/// samples mixtures, too. The interface, the frame and what happens below the horizon are those of Bsdf.
 ///
-/// Thread safety: immutable; every const member may be called concurrently. No member but the constructor allocates or locks.
+/// Thread safety: immutable; every const member may be called concurrently. No member but the constructor allocates or
+/// locks.
 class StackBsdf {
  public:
   /// @throws Error as sampled_stack() does, and where there is neither a table nor a colour.
@@ -27,7 +29,9 @@ class StackBsdf {
 
   const Stack<float>& stack() const noexcept { return stack_; }
   /// All memory held, the shared table apart.
-  std::size_t bytes() const noexcept { return sizeof(*this) - sizeof(stack_) - sizeof(colour_) + stack_.bytes() + colour_.bytes(); }
+  std::size_t bytes() const noexcept {
+    return sizeof(*this) - sizeof(stack_) - sizeof(colour_) + stack_.bytes() + colour_.bytes();
+  }
 
  private:
   Stack<float> stack_;

@@ -1,9 +1,8 @@
-#include <gonio/brdf/proof/statistics/bins.h>
-
 #include <algorithm>
 #include <cmath>
 #include <string>
 
+#include <gonio/brdf/proof/statistics/bins.h>
 #include <gonio/mapping/base/error.h>
 #include <gonio/mapping/charts/hemisphere.h>
 
@@ -65,7 +64,8 @@ Value adaptive(const Cell& c, const Function& function, double draws, double sha
   if (depth == largest_depth || magnitude(fine - coarse) <= tolerance(magnitude(fine), share, draws)) return fine;
   const double phi = (c.phi0 + c.phi1) / 2, r = (c.r0 + c.r1) / 2;
   Value sum(0);
-  for (const Cell& quarter : {Cell{c.phi0, phi, c.r0, r}, {phi, c.phi1, c.r0, r}, {c.phi0, phi, r, c.r1}, {phi, c.phi1, r, c.r1}})
+  for (const Cell& quarter :
+       {Cell{c.phi0, phi, c.r0, r}, {phi, c.phi1, c.r0, r}, {c.phi0, phi, r, c.r1}, {phi, c.phi1, r, c.r1}})
     sum += adaptive<Value>(quarter, function, draws, share / 2, depth + 1);
   return sum;
 }

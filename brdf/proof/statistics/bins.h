@@ -2,8 +2,9 @@
 
 #include <cstdint>
 #include <functional>
-#include <glm/vec3.hpp>
 #include <vector>
+
+#include <glm/vec3.hpp>
 
 namespace gonio::proof {
 

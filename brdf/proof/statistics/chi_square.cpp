@@ -1,13 +1,13 @@
-#include <gonio/brdf/proof/statistics/chi_square.h>
-
 #include <algorithm>
-#include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 #include <iomanip>
 #include <numeric>
 #include <ostream>
 #include <sstream>
 
+#include <boost/math/special_functions/gamma.hpp>
+
+#include <gonio/brdf/proof/statistics/chi_square.h>
 #include <gonio/mapping/base/atomic_file.h>
 #include <gonio/mapping/charts/hemisphere.h>
 
@@ -40,7 +40,8 @@ ChiSquare chi_square(const Draw& draw, const Density& pdf, const Bins& bins, std
 
   std::vector<std::size_t> order(bins.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return result.expected[a] < result.expected[b]; });
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return result.expected[a] < result.expected[b]; });
   double pooled_expected = 0, pooled_observed = 0;
   int cells = 0;
   const auto add = [&](double expected, double observed) {
@@ -66,9 +67,9 @@ double sidak(double overall, int tests) { return -std::expm1(std::log1p(-overall
 
 std::string ChiSquare::summary() const {
   std::ostringstream text;
-  text << "chi2 = " << statistic << ", " << degrees_of_freedom << " degrees of freedom, p = " << p
-       << ", pdf integral " << pdf_integral << ", " << draws << " draws, " << empty << " empty, " << outside
-       << " outside, " << where_zero << " where the pdf is 0";
+  text << "chi2 = " << statistic << ", " << degrees_of_freedom << " degrees of freedom, p = " << p << ", pdf integral "
+       << pdf_integral << ", " << draws << " draws, " << empty << " empty, " << outside << " outside, " << where_zero
+       << " where the pdf is 0";
   return text.str();
 }
 
@@ -77,15 +78,18 @@ void write_chi_square_plot(const std::string& path, const Bins& bins, const ChiS
   const auto& phi = bins.phi();
   const auto& r = bins.r();
   const std::size_t n = r.size() - 1;
-  const double peak = result.expected.empty() ? 1 : std::max(1.0, *std::max_element(result.expected.begin(), result.expected.end()));
+  const double peak =
+      result.expected.empty() ? 1 : std::max(1.0, *std::max_element(result.expected.begin(), result.expected.end()));
   write_stream_atomically(path, [&](std::ostream& out) {
-    out << std::setprecision(4) << "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 960 370\" font-family=\"sans-serif\">\n"
+    out << std::setprecision(4)
+        << "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 960 370\" font-family=\"sans-serif\">\n"
         << "<rect width=\"960\" height=\"370\" fill=\"white\"/><text x=\"10\" y=\"20\" font-size=\"14\">" << title
         << "</text>\n<text x=\"10\" y=\"38\" font-size=\"11\">" << result.summary() << "</text>\n";
     const char* captions[3] = {"expected", "observed", "(observed - expected) / sigma: blue -4, red +4"};
     for (int panel = 0; panel < 3; ++panel) {
       const double cx = 160 + 320 * panel, cy = 205, scale = 145 / r.back();
-      out << "<text x=\"" << cx << "\" y=\"365\" text-anchor=\"middle\" font-size=\"11\">" << captions[panel] << "</text>\n";
+      out << "<text x=\"" << cx << "\" y=\"365\" text-anchor=\"middle\" font-size=\"11\">" << captions[panel]
+          << "</text>\n";
       for (std::size_t k = 0; k < bins.size(); ++k) {
         const double expected = result.expected[k], observed = static_cast<double>(result.observed[k]);
         int red, green, blue;

@@ -12,15 +12,15 @@ namespace gonio::proof {
 
 /// The outcome of a chi-square goodness-of-fit test of draws against a pdf.
 struct ChiSquare {
-  double p = 0;              ///< probability of a statistic at least as large if the draws follow the pdf
+  double p = 0;  ///< probability of a statistic at least as large if the draws follow the pdf
   double statistic = 0;
   int degrees_of_freedom = 0;
-  double pdf_integral = 0;   ///< over the domain of the bins, by quadrature: no draw is involved
-  std::uint64_t draws = 0;   ///< all of them
-  std::uint64_t empty = 0;   ///< draws without a direction
-  std::uint64_t outside = 0; ///< draws outside the domain or with a component that is not finite
-  std::uint64_t where_zero = 0;  ///< draws where the pdf is 0, in cells over which it is
-  std::vector<double> expected;       ///< per cell of the bins, for the draws that have a direction
+  double pdf_integral = 0;              ///< over the domain of the bins, by quadrature: no draw is involved
+  std::uint64_t draws = 0;              ///< all of them
+  std::uint64_t empty = 0;              ///< draws without a direction
+  std::uint64_t outside = 0;            ///< draws outside the domain or with a component that is not finite
+  std::uint64_t where_zero = 0;         ///< draws where the pdf is 0, in cells over which it is
+  std::vector<double> expected;         ///< per cell of the bins, for the draws that have a direction
   std::vector<std::uint64_t> observed;  ///< per cell of the bins
 
   /// Whether the draws can be told from the pdf: p >= significance and no draw outside or where the

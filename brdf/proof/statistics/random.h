@@ -1,8 +1,9 @@
 #pragma once
 
 #include <cstdint>
-#include <glm/vec2.hpp>
 #include <random>
+
+#include <glm/vec2.hpp>
 
 namespace gonio::proof {
 

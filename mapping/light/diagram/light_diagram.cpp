@@ -1,11 +1,12 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <glm/geometric.hpp>
+
 #include <gonio/mapping/base/error.h>
 #include <gonio/mapping/light/diagram/light_diagram.h>
 #include <gonio/mapping/light/diagram/unfold.h>
-
-#include <algorithm>
-#include <cmath>
-#include <glm/geometric.hpp>
-#include <string>
 
 namespace gonio {
 namespace {
@@ -35,8 +36,8 @@ double sine_moment(double g0, double g1, double a, double b) {
   const double half = (g1 - g0) / 2, middle = (g0 + g1) / 2;
   const double mean = (a + b) / 2, slope = (b - a) / 2;
   // (sin h - h cos h) / h, as a series where it cancels.
-  const double odd = half > 1e-2 ? (std::sin(half) - half * std::cos(half)) / half
-                                 : half * half / 3 * (1 - half * half / 10);
+  const double odd =
+      half > 1e-2 ? (std::sin(half) - half * std::cos(half)) / half : half * half / 3 * (1 - half * half / 10);
   return 2 * (mean * std::sin(half) * std::sin(middle) + slope * odd * std::cos(middle));
 }
 
@@ -50,8 +51,7 @@ LightDiagram tabulated(const LightDiagram& d, const LightFrame& frame, double st
   const auto jumps = [&](double gamma) {
     const double slack = 1e-3 * max_intensity(d);
     return std::any_of(result.c.begin(), result.c.end(), [&](double c) {
-      return std::abs(d.intensity(frame.direction(c, gamma)) -
-                      d.intensity(frame.direction(c, pi<double> / 2))) > slack;
+      return std::abs(d.intensity(frame.direction(c, gamma)) - d.intensity(frame.direction(c, pi<double> / 2))) > slack;
     });
   };
   for (int j = 0; j <= 2 * quarter; ++j) {
@@ -89,8 +89,7 @@ double LightDiagram::intensity(LightAngles angles) const noexcept {
   if (angles.gamma < gamma.front() - 1e-12 || angles.gamma > gamma.back() + 1e-12) return 0;
   const Position p = locate(c, wrapped(angles.c)), q = locate(gamma, angles.gamma);
   const double low = (1 - q.fraction) * at(p.cell, q.cell) + q.fraction * at(p.cell, q.cell + 1);
-  const double high =
-      (1 - q.fraction) * at(p.cell + 1, q.cell) + q.fraction * at(p.cell + 1, q.cell + 1);
+  const double high = (1 - q.fraction) * at(p.cell + 1, q.cell) + q.fraction * at(p.cell + 1, q.cell + 1);
   return (1 - p.fraction) * low + p.fraction * high;
 }
 
@@ -124,9 +123,7 @@ void check(const LightDiagram& d) {
           "pi");
 }
 
-double max_intensity(const LightDiagram& d) noexcept {
-  return *std::max_element(d.cd.begin(), d.cd.end());
-}
+double max_intensity(const LightDiagram& d) noexcept { return *std::max_element(d.cd.begin(), d.cd.end()); }
 
 double flux(const LightDiagram& d, double gamma_from, double gamma_to) noexcept {
   double total = 0;
@@ -157,8 +154,7 @@ LightDiagram with_parallel(const LightDiagram& d, double gamma) {
   for (std::size_t i = 0; i < d.c.size(); ++i)
     for (std::size_t j = 0; j < d.gamma.size(); ++j) {
       result.cd.push_back(d.at(i, j));
-      if (j == q.cell)
-        result.cd.push_back((1 - q.fraction) * d.at(i, j) + q.fraction * d.at(i, j + 1));
+      if (j == q.cell) result.cd.push_back((1 - q.fraction) * d.at(i, j) + q.fraction * d.at(i, j + 1));
     }
   return result;
 }
@@ -166,8 +162,8 @@ LightDiagram with_parallel(const LightDiagram& d, double gamma) {
 LightDiagram without_dark_hemisphere(const LightDiagram& diagram) {
   constexpr double half = pi<double> / 2;
   const LightDiagram whole = with_parallel(diagram, half);
-  const auto equator_at = std::find_if(whole.gamma.begin(), whole.gamma.end(),
-                                       [](double g) { return std::abs(g - half) < 1e-9; });
+  const auto equator_at =
+      std::find_if(whole.gamma.begin(), whole.gamma.end(), [](double g) { return std::abs(g - half) < 1e-9; });
   const std::size_t n = whole.gamma.size();
   const std::size_t equator = static_cast<std::size_t>(equator_at - whole.gamma.begin());
   if (equator == 0 || equator >= n - 1) return diagram;  // one hemisphere already
@@ -212,8 +208,7 @@ LightDiagram in_frame(const LightDiagram& d, const LightFrame& frame, double ste
     if (std::abs(c - tau) < 1e-9 || c < 1e-9) c = 0;
     meridians.push_back({c, i});
   }
-  std::sort(meridians.begin(), meridians.end(),
-            [](const Meridian& a, const Meridian& b) { return a.c < b.c; });
+  std::sort(meridians.begin(), meridians.end(), [](const Meridian& a, const Meridian& b) { return a.c < b.c; });
   const std::size_t n = d.gamma.size();
   const auto append = [&](double c, auto value) {
     result.c.push_back(c);

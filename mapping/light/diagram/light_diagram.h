@@ -1,9 +1,9 @@
 #pragma once
 
-#include <gonio/mapping/charts/hemisphere.h>
-
 #include <cstddef>
 #include <vector>
+
+#include <gonio/mapping/charts/hemisphere.h>
 
 namespace gonio {
 
@@ -28,20 +28,14 @@ LightAngles to_light_angles(const LightFrame& frame, const Vec3<double>& w) noex
 /// meridians (C planes) and parallels (gamma). Between its lines the intensity is bilinear in C and
 /// gamma; where gamma is not covered it is 0.
 struct LightDiagram {
-  std::vector<double>
-      c;  ///< M >= 2 meridians [rad], ascending from 0 to 2 pi; the last repeats the first
+  std::vector<double> c;      ///< M >= 2 meridians [rad], ascending from 0 to 2 pi; the last repeats the first
   std::vector<double> gamma;  ///< N >= 2 parallels [rad], ascending from 0 or pi/2 to pi/2 or pi
-  std::vector<double>
-      cd;  ///< M x N intensities [cd], meridian-major, finite, >= 0; where meridians meet at a
-           ///< pole they hold one value (but for the dark ones of a sector)
+  std::vector<double> cd;     ///< M x N intensities [cd], meridian-major, finite, >= 0; where meridians meet at a
+                              ///< pole they hold one value (but for the dark ones of a sector)
   LightFrame frame;
 
-  double& at(std::size_t meridian, std::size_t parallel) {
-    return cd[meridian * gamma.size() + parallel];
-  }
-  double at(std::size_t meridian, std::size_t parallel) const {
-    return cd[meridian * gamma.size() + parallel];
-  }
+  double& at(std::size_t meridian, std::size_t parallel) { return cd[meridian * gamma.size() + parallel]; }
+  double at(std::size_t meridian, std::size_t parallel) const { return cd[meridian * gamma.size() + parallel]; }
   /// Intensity at angles of this diagram's own frame; C of any turn, gamma in [0, pi].
   double intensity(LightAngles angles) const noexcept;
   /// Intensity [cd] in a direction of space, a unit vector.
@@ -58,8 +52,7 @@ double max_intensity(const LightDiagram& diagram) noexcept;
 
 /// The flux [lm] of the bilinear diagram between two values of gamma [rad], in closed form:
 /// integral of I sin(gamma) dgamma dC. Accurate to rounding.
-double flux(const LightDiagram& diagram, double gamma_from = 0,
-            double gamma_to = pi<double>) noexcept;
+double flux(const LightDiagram& diagram, double gamma_from = 0, double gamma_to = pi<double>) noexcept;
 
 /// The same distribution without the parallels of a hemisphere that is dark throughout: what costs
 /// half. A diagram that is zero everywhere keeps its lower half.
@@ -68,8 +61,7 @@ LightDiagram without_dark_hemisphere(const LightDiagram& diagram);
 /// The same distribution in another frame. Exact (bit by bit up to the C labels) if both frames
 /// share the polar axis and its direction; otherwise tabulated anew every `step` [rad] (a divisor
 /// of pi/2).
-LightDiagram in_frame(const LightDiagram& diagram, const LightFrame& frame,
-                      double step = pi<double> / 360);
+LightDiagram in_frame(const LightDiagram& diagram, const LightFrame& frame, double step = pi<double> / 360);
 
 /// The same distribution with parallels [rad] inserted where they are missing; exact.
 LightDiagram with_parallel(const LightDiagram& diagram, double gamma);

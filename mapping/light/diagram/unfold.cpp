@@ -1,10 +1,10 @@
-#include <gonio/mapping/base/error.h>
-#include <gonio/mapping/base/format_number.h>
-#include <gonio/mapping/light/diagram/unfold.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include <gonio/mapping/base/error.h>
+#include <gonio/mapping/base/format_number.h>
+#include <gonio/mapping/light/diagram/unfold.h>
 
 namespace gonio {
 namespace {
@@ -27,12 +27,7 @@ struct Rule {
 
 constexpr std::array<Rule, 5> rules{{
     {LightSymmetry::rotational, "rotational", 0, 0, 1, {{{0, 1}}}},
-    {LightSymmetry::quadrant,
-     "C0-C180 and C90-C270",
-     0,
-     90,
-     4,
-     {{{0, 1}, {180, -1}, {180, 1}, {0, -1}}}},
+    {LightSymmetry::quadrant, "C0-C180 and C90-C270", 0, 90, 4, {{{0, 1}, {180, -1}, {180, 1}, {0, -1}}}},
     {LightSymmetry::c0_c180, "C0-C180", 0, 180, 2, {{{0, 1}, {0, -1}}}},
     {LightSymmetry::c90_c270, "C90-C270", 90, 270, 2, {{{0, 1}, {180, -1}}}},
     {LightSymmetry::none, "none", 0, 360, 1, {{{0, 1}}}},
@@ -56,9 +51,8 @@ void check_angles(const std::vector<double>& angles, const char* field, const st
   if (angles.empty()) throw Error(name + ": " + field + ": found none, expected at least one");
   for (std::size_t i = 1; i < angles.size(); ++i)
     if (!(angles[i] > angles[i - 1]))
-      throw Error(name + ": " + field + "[" + std::to_string(i) + "]: found " +
-                  format_number(angles[i]) + " after " + format_number(angles[i - 1]) +
-                  ", expected ascending angles");
+      throw Error(name + ": " + field + "[" + std::to_string(i) + "]: found " + format_number(angles[i]) + " after " +
+                  format_number(angles[i - 1]) + ", expected ascending angles");
 }
 
 struct Meridian {
@@ -67,45 +61,43 @@ struct Meridian {
 };
 
 /// The parallels: those of the file, dark ones where the file stops short of a hemisphere.
-void complete_parallels(std::vector<double>& gamma, std::vector<Meridian>& meridians,
-                        const std::string& name, Problems& deviations) {
+void complete_parallels(std::vector<double>& gamma, std::vector<Meridian>& meridians, const std::string& name,
+                        Problems& deviations) {
   for (double& g : gamma)
     for (double edge : {0.0, 90.0, 180.0})
       if (std::abs(g - edge) < same_angle) g = edge;
   const double first = gamma.front(), last = gamma.back();
   if (first < 0 || last > 180)
-    throw Error(name + ": vertical angles: found the range " + format_number(first) + " to " +
-                format_number(last) + ", expected 0 to 180 degrees from the pole");
+    throw Error(name + ": vertical angles: found the range " + format_number(first) + " to " + format_number(last) +
+                ", expected 0 to 180 degrees from the pole");
   const double edge = edge_width * 180 / pi<double>;
   const auto insert = [&](bool at_front, double angle) {
     gamma.insert(at_front ? gamma.begin() : gamma.end(), angle);
     for (Meridian& m : meridians) m.cd.insert(at_front ? m.cd.begin() : m.cd.end(), 0.0);
   };
   const auto dark = [&](bool at_front) {
-    return std::all_of(meridians.begin(), meridians.end(), [&](const Meridian& m) {
-      return (at_front ? m.cd.front() : m.cd.back()) == 0;
-    });
+    return std::all_of(meridians.begin(), meridians.end(),
+                       [&](const Meridian& m) { return (at_front ? m.cd.front() : m.cd.back()) == 0; });
   };
   if (last != 90 && last != 180) {
-    deviations.push_back({"vertical angles", "the last at " + format_number(last),
-                          "90 or 180; taken as dark beyond", false});
+    deviations.push_back(
+        {"vertical angles", "the last at " + format_number(last), "90 or 180; taken as dark beyond", false});
     if (!dark(false)) insert(false, last + edge);
     insert(false, last < 90 ? 90 : 180);
   }
   if (first != 0 && first != 90) {
-    deviations.push_back({"vertical angles", "the first at " + format_number(first),
-                          "0 or 90; taken as dark before", false});
+    deviations.push_back(
+        {"vertical angles", "the first at " + format_number(first), "0 or 90; taken as dark before", false});
     if (!dark(true)) insert(true, first - edge);
     insert(true, first > 90 ? 90 : 0);
   }
   if (gamma.size() < 2)
-    throw Error(name + ": vertical angles: found " + std::to_string(gamma.size()) +
-                ", expected at least 2");
+    throw Error(name + ": vertical angles: found " + std::to_string(gamma.size()) + ", expected at least 2");
 }
 
 /// One value where all meridians meet.
-void unite_pole(std::vector<Meridian>& meridians, bool front, const FoldedLight& folded,
-                double largest, Problems& deviations) {
+void unite_pole(std::vector<Meridian>& meridians, bool front, const FoldedLight& folded, double largest,
+                Problems& deviations) {
   const auto value = [&](Meridian& m) -> double& { return front ? m.cd.front() : m.cd.back(); };
   double lowest = value(meridians.front()), highest = lowest, sum = 0, weight = 0;
   for (std::size_t i = 0; i < meridians.size(); ++i) {
@@ -120,10 +112,9 @@ void unite_pole(std::vector<Meridian>& meridians, bool front, const FoldedLight&
   if (lowest == highest) return;
   const double mean = sum / weight;
   if (highest - lowest > 1e-6 * largest)
-    deviations.push_back(
-        {front ? "intensity at the pole gamma = 0" : "intensity at the pole gamma = 180",
-         format_number(lowest) + " to " + format_number(highest) + " " + folded.unit,
-         "one value; the mean " + format_number(mean) + " is taken", false});
+    deviations.push_back({front ? "intensity at the pole gamma = 0" : "intensity at the pole gamma = 180",
+                          format_number(lowest) + " to " + format_number(highest) + " " + folded.unit,
+                          "one value; the mean " + format_number(mean) + " is taken", false});
   for (Meridian& m : meridians) value(m) = mean;
 }
 
@@ -131,8 +122,7 @@ void unite_pole(std::vector<Meridian>& meridians, bool front, const FoldedLight&
 
 const char* to_string(LightSymmetry symmetry) noexcept { return rule_of(symmetry).name; }
 
-LightDiagram unfold(const FoldedLight& folded, const LightFrame& frame, const std::string& name,
-                    Problems& deviations) {
+LightDiagram unfold(const FoldedLight& folded, const LightFrame& frame, const std::string& name, Problems& deviations) {
   check_angles(folded.c, "horizontal angles", name);
   check_angles(folded.gamma, "vertical angles", name);
   const std::size_t n = folded.gamma.size();
@@ -142,8 +132,8 @@ LightDiagram unfold(const FoldedLight& folded, const LightFrame& frame, const st
   std::size_t negative = 0;
   for (double v : folded.cd) largest = std::max(largest, v), negative += v < 0;
   if (negative > 0)
-    deviations.push_back({"intensities", std::to_string(negative) + " negative values",
-                          "values >= 0; taken as 0", false});
+    deviations.push_back(
+        {"intensities", std::to_string(negative) + " negative values", "values >= 0; taken as 0", false});
 
   std::vector<Meridian> meridians;
   for (std::size_t i = 0; i < folded.c.size(); ++i)
@@ -154,8 +144,7 @@ LightDiagram unfold(const FoldedLight& folded, const LightFrame& frame, const st
       meridians.push_back(std::move(m));
       if (folded.symmetry == LightSymmetry::rotational) break;
     }
-  std::stable_sort(meridians.begin(), meridians.end(),
-                   [](const Meridian& a, const Meridian& b) { return a.c < b.c; });
+  std::stable_sort(meridians.begin(), meridians.end(), [](const Meridian& a, const Meridian& b) { return a.c < b.c; });
   // Images of a meridian in a mirror plane, and 360 beside 0.
   for (std::size_t i = 1; i < meridians.size();) {
     if (meridians[i].c - meridians[i - 1].c > same_angle) {
@@ -166,10 +155,9 @@ LightDiagram unfold(const FoldedLight& folded, const LightFrame& frame, const st
     for (std::size_t j = 0; j < n; ++j)
       difference = std::max(difference, std::abs(meridians[i].cd[j] - meridians[i - 1].cd[j]));
     if (difference > 1e-6 * largest)
-      deviations.push_back(
-          {"intensities at C = " + format_number(meridians[i].c),
-           "two meridians that differ by up to " + format_number(difference) + " " + folded.unit,
-           "equal ones; the first is taken", false});
+      deviations.push_back({"intensities at C = " + format_number(meridians[i].c),
+                            "two meridians that differ by up to " + format_number(difference) + " " + folded.unit,
+                            "equal ones; the first is taken", false});
     meridians.erase(meridians.begin() + static_cast<std::ptrdiff_t>(i));
   }
 
@@ -179,14 +167,11 @@ LightDiagram unfold(const FoldedLight& folded, const LightFrame& frame, const st
   // The lit meridians of a sector meet in one value; its dark ones stay dark up to the pole.
   if (gamma.front() == 0) unite_pole(meridians, true, folded, largest, deviations);
   if (gamma.back() == 180) unite_pole(meridians, false, folded, largest, deviations);
-  if (folded.sector && folded.c.size() > 1 &&
-      folded.c.back() - folded.c.front() < 360 - same_angle) {
+  if (folded.sector && folded.c.size() > 1 && folded.c.back() - folded.c.front() < 360 - same_angle) {
     const double edge = edge_width * 180 / pi<double>;
     const std::vector<double> dark(gamma.size(), 0.0);
-    for (double c : {turned(folded.c.front() - edge), turned(folded.c.back() + edge)})
-      meridians.push_back({c, dark});
-    std::sort(meridians.begin(), meridians.end(),
-              [](const Meridian& a, const Meridian& b) { return a.c < b.c; });
+    for (double c : {turned(folded.c.front() - edge), turned(folded.c.back() + edge)}) meridians.push_back({c, dark});
+    std::sort(meridians.begin(), meridians.end(), [](const Meridian& a, const Meridian& b) { return a.c < b.c; });
   }
   LightDiagram diagram;
   diagram.frame = frame;
@@ -200,15 +185,13 @@ LightDiagram unfold(const FoldedLight& folded, const LightFrame& frame, const st
     const Meridian &before = meridians.back(), &after = meridians.front();
     const double t = (360 - before.c) / (360 - before.c + after.c);
     std::vector<double> values(gamma.size());
-    for (std::size_t j = 0; j < values.size(); ++j)
-      values[j] = (1 - t) * before.cd[j] + t * after.cd[j];
+    for (std::size_t j = 0; j < values.size(); ++j) values[j] = (1 - t) * before.cd[j] + t * after.cd[j];
     append(0, values);
   } else {
     meridians.front().c = 0;
   }
   for (const Meridian& m : meridians) append(m.c, m.cd);
-  const std::vector<double> first(diagram.cd.begin(),
-                                  diagram.cd.begin() + static_cast<std::ptrdiff_t>(gamma.size()));
+  const std::vector<double> first(diagram.cd.begin(), diagram.cd.begin() + static_cast<std::ptrdiff_t>(gamma.size()));
   append(360, first);
   check(diagram);
   return diagram;
@@ -231,8 +214,7 @@ LightSymmetry find_symmetry(const LightDiagram& d, double tolerance) {
     }
     if (rule.symmetry == LightSymmetry::rotational) return true;
     for (double edge : {rule.from, rule.to})
-      if (std::none_of(d.c.begin(), d.c.end(),
-                       [&](double c) { return std::abs(c - radians(edge)) < 1e-9; }))
+      if (std::none_of(d.c.begin(), d.c.end(), [&](double c) { return std::abs(c - radians(edge)) < 1e-9; }))
         return false;
     return true;
   };

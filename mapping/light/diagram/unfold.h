@@ -1,10 +1,10 @@
 #pragma once
 
-#include <gonio/mapping/base/problem.h>
-#include <gonio/mapping/light/diagram/light_diagram.h>
-
 #include <string>
 #include <vector>
+
+#include <gonio/mapping/base/problem.h>
+#include <gonio/mapping/light/diagram/light_diagram.h>
 
 namespace gonio {
 
@@ -37,8 +37,7 @@ struct FoldedLight {
 /// Where a distribution ends abruptly (at the last gamma of a file that stops short of 90 or 180,
 /// at the edges of a sector) it falls to zero over `edge_width`.
 /// @throws Error naming `name` if an angle list is empty, not ascending or out of range.
-LightDiagram unfold(const FoldedLight& folded, const LightFrame& frame, const std::string& name,
-                    Problems& deviations);
+LightDiagram unfold(const FoldedLight& folded, const LightFrame& frame, const std::string& name, Problems& deviations);
 
 /// Width [rad] of the slope with which an abrupt edge is represented: a thousandth of a degree.
 inline constexpr double edge_width = 1e-3 * pi<double> / 180;

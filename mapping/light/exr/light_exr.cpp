@@ -1,3 +1,6 @@
+#include <cmath>
+#include <vector>
+
 #include <ImfChannelList.h>
 #include <ImfDoubleAttribute.h>
 #include <ImfFloatVectorAttribute.h>
@@ -10,15 +13,13 @@
 #include <ImfStringAttribute.h>
 #include <ImfVecAttribute.h>
 #include <ImfVersion.h>
+
 #include <gonio/mapping/base/atomic_file.h>
 #include <gonio/mapping/base/bytes.h>
 #include <gonio/mapping/base/error.h>
 #include <gonio/mapping/light/exr/light_exr.h>
-#include <gonio/mapping/light/texture/octahedral.h>
 #include <gonio/mapping/light/files/text_scanner.h>
-
-#include <cmath>
-#include <vector>
+#include <gonio/mapping/light/texture/octahedral.h>
 
 namespace gonio {
 namespace {
@@ -40,9 +41,8 @@ void write(const std::filesystem::path& path, Imf::Header header, const char* ch
   header.compression() = Imf::ZIP_COMPRESSION;
   header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
   Imf::FrameBuffer buffer;
-  buffer.insert(channel,
-                Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(pixels.data()), sizeof(float),
-                           sizeof(float) * static_cast<std::size_t>(width)));
+  buffer.insert(channel, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(pixels.data()), sizeof(float),
+                                    sizeof(float) * static_cast<std::size_t>(width)));
   // To memory first: OpenEXR finishes its files in destructors, where a full disk goes unnoticed.
   Imf::StdOSStream bytes;
   try {
@@ -57,8 +57,7 @@ void write(const std::filesystem::path& path, Imf::Header header, const char* ch
 
 /// `direction_of(x, y)` at points of the image in pixels.
 template <class Direction>
-std::vector<float> render(const Reconstruction& intensity, int width, int height,
-                          const Direction& direction_of) {
+std::vector<float> render(const Reconstruction& intensity, int width, int height, const Direction& direction_of) {
   std::vector<float> pixels;
   pixels.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   for (int y = 0; y < height; ++y)
@@ -100,27 +99,22 @@ Luminaire read(const std::string& name) {
   const Imf::Header& header = file.header();
   const int version = attribute<Imf::IntAttribute>(name, header, "gonioLight");
   if (version != light_exr_version)
-    throw Error(name + ": attribute gonioLight: found version " + std::to_string(version) +
-                ", expected " + std::to_string(light_exr_version));
+    throw Error(name + ": attribute gonioLight: found version " + std::to_string(version) + ", expected " +
+                std::to_string(light_exr_version));
   Luminaire light;
   LightDiagram& d = light.diagram;
-  for (float v : attribute<Imf::FloatVectorAttribute>(name, header, "c"))
-    d.c.push_back(v * pi<double> / 180);
-  for (float v : attribute<Imf::FloatVectorAttribute>(name, header, "gamma"))
-    d.gamma.push_back(v * pi<double> / 180);
+  for (float v : attribute<Imf::FloatVectorAttribute>(name, header, "c")) d.c.push_back(v * pi<double> / 180);
+  for (float v : attribute<Imf::FloatVectorAttribute>(name, header, "gamma")) d.gamma.push_back(v * pi<double> / 180);
   d.frame = {from_imath(attribute<Imf::V3dAttribute>(name, header, "nadir")),
              from_imath(attribute<Imf::V3dAttribute>(name, header, "c0")),
              from_imath(attribute<Imf::V3dAttribute>(name, header, "c90"))};
   const auto& window = header.dataWindow();
-  const long long width = 1LL + window.max.x - window.min.x,
-                  height = 1LL + window.max.y - window.min.y;
-  if (width != static_cast<long long>(d.gamma.size()) ||
-      height != static_cast<long long>(d.c.size()) || width > largest_side ||
-      height > largest_side || window.min.x != 0 || window.min.y != 0)
+  const long long width = 1LL + window.max.x - window.min.x, height = 1LL + window.max.y - window.min.y;
+  if (width != static_cast<long long>(d.gamma.size()) || height != static_cast<long long>(d.c.size()) ||
+      width > largest_side || height > largest_side || window.min.x != 0 || window.min.y != 0)
     throw Error(name + ": size: found " + std::to_string(width) + " x " + std::to_string(height) +
                 ", expected as many columns as gamma has lines and as many rows as c");
-  if (!header.channels().findChannel("cd"))
-    throw Error(name + ": channel cd: found none, expected one");
+  if (!header.channels().findChannel("cd")) throw Error(name + ": channel cd: found none, expected one");
   std::vector<float> pixels(static_cast<std::size_t>(width * height));
   Imf::FrameBuffer buffer;
   buffer.insert("cd", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(pixels.data()), sizeof(float),
@@ -175,10 +169,8 @@ void save_light(const std::filesystem::path& path, const Luminaire& light) {
   header.insert("size", Imf::V3dAttribute(to_imath(light.size)));
   header.insert("watts", Imf::DoubleAttribute(light.watts));
   if (light.lamp_lumens) header.insert("lampLumens", Imf::DoubleAttribute(*light.lamp_lumens));
-  if (light.stated_lumens)
-    header.insert("statedLumens", Imf::DoubleAttribute(*light.stated_lumens));
-  if (light.downward_fraction)
-    header.insert("downwardFraction", Imf::DoubleAttribute(*light.downward_fraction));
+  if (light.stated_lumens) header.insert("statedLumens", Imf::DoubleAttribute(*light.stated_lumens));
+  if (light.downward_fraction) header.insert("downwardFraction", Imf::DoubleAttribute(*light.downward_fraction));
   std::vector<float> pixels(d.cd.begin(), d.cd.end());
   write(path, header, "cd", static_cast<int>(d.gamma.size()), pixels);
 }
@@ -205,21 +197,17 @@ bool is_light_file(const std::filesystem::path& path) {
   return light_format(without_utf16(read_bytes(path, 1 << 16))) != LightFormat::unknown;
 }
 
-Luminaire load_any_light(const std::filesystem::path& path, const LightOptions& options,
-                         Problems& deviations) {
+Luminaire load_any_light(const std::filesystem::path& path, const LightOptions& options, Problems& deviations) {
   return is_exr(path) ? load_light_exr(path) : load_light(path, options, deviations);
 }
 
-void save_octahedral(const std::filesystem::path& path, const Reconstruction& intensity,
-                     int resolution) {
+void save_octahedral(const std::filesystem::path& path, const Reconstruction& intensity, int resolution) {
   check_resolution("octahedral image: resolution", resolution);
   std::vector<float> pixels = render(intensity, resolution, resolution, [&](double x, double y) {
     return octahedral_to_direction(SquarePoint<double>{x / resolution, y / resolution});
   });
   Imf::Header header(resolution, resolution);
-  header.insert(
-      "comments",
-      Imf::StringAttribute("luminous intensity [cd], equal-area octahedral, +z in the centre"));
+  header.insert("comments", Imf::StringAttribute("luminous intensity [cd], equal-area octahedral, +z in the centre"));
   write(path, header, "Y", resolution, pixels);
 }
 
@@ -233,9 +221,8 @@ void save_latlong(const std::filesystem::path& path, const Reconstruction& inten
     return Vec3<double>{s * std::cos(c), s * std::sin(c), z};
   });
   Imf::Header header(2 * height, height);
-  header.insert(
-      "comments",
-      Imf::StringAttribute("luminous intensity [cd], zenith at the top, C from 0 to 360 degrees"));
+  header.insert("comments",
+                Imf::StringAttribute("luminous intensity [cd], zenith at the top, C from 0 to 360 degrees"));
   write(path, header, "Y", 2 * height, pixels);
 }
 

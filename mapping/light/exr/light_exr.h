@@ -1,10 +1,10 @@
 #pragma once
 
-#include <gonio/mapping/light/files/luminaire.h>
-#include <gonio/mapping/light/texture/solid.h>
-
 #include <filesystem>
 #include <string>
+
+#include <gonio/mapping/light/files/luminaire.h>
+#include <gonio/mapping/light/texture/solid.h>
 
 namespace gonio {
 
@@ -27,8 +27,7 @@ Luminaire load_light_exr(const std::filesystem::path& path);
 bool is_light_file(const std::filesystem::path& path);
 
 /// load_light() for all formats: IES, EULUMDAT and the EXR of this library, told by content.
-Luminaire load_any_light(const std::filesystem::path& path, const LightOptions& options,
-                         Problems& deviations);
+Luminaire load_any_light(const std::filesystem::path& path, const LightOptions& options, Problems& deviations);
 
 /// Images of the whole sphere for renderers, channel "Y" (32-bit float, [cd]). A pixel holds the
 /// mean intensity over its solid angle (4 x 4 points), so the sum over the pixels keeps the flux.
@@ -36,13 +35,11 @@ Luminaire load_any_light(const std::filesystem::path& path, const LightOptions& 
 /// The equal-area octahedral map of octahedral.h, resolution x resolution: +z (the zenith) in the
 /// centre, the nadir in the corners. What pbrt-v4's goniometric light reads.
 /// @throws Error for a resolution below 8 or a path that cannot be written.
-void save_octahedral(const std::filesystem::path& path, const Reconstruction& intensity,
-                     int resolution = 512);
+void save_octahedral(const std::filesystem::path& path, const Reconstruction& intensity, int resolution = 512);
 
 /// Latitude-longitude, 2 height x height: the zenith at the top, C from 0 at the left edge to 2 pi
 /// at the right.
-void save_latlong(const std::filesystem::path& path, const Reconstruction& intensity,
-                  int height = 512);
+void save_latlong(const std::filesystem::path& path, const Reconstruction& intensity, int height = 512);
 
 /// A light source for a pbrt-v4 scene whose image is a file of save_octahedral(). In the light's
 /// frame as pbrt sees it the zenith is +y, C0 is +x and C90 is +z; both are the same luminaire, not

@@ -1,10 +1,10 @@
+#include <algorithm>
+#include <cmath>
+
 #include <gonio/mapping/base/error.h>
 #include <gonio/mapping/base/format_number.h>
 #include <gonio/mapping/light/files/eulumdat.h>
 #include <gonio/mapping/light/files/text_scanner.h>
-
-#include <algorithm>
-#include <cmath>
 
 namespace gonio {
 namespace {
@@ -19,15 +19,14 @@ class Fields {
     const int line = scanner_.line();
     std::string value(scanner_.next_line(field));
     if (value.size() > most)
-      deviations_.push_back({field, std::to_string(value.size()) + " characters",
-                             "at most " + std::to_string(most), false, line});
+      deviations_.push_back(
+          {field, std::to_string(value.size()) + " characters", "at most " + std::to_string(most), false, line});
     return value;
   }
   double number(const char* field) {
     const std::string_view line = scanner_.next_line(field);
     double value;
-    if (!parse(line, value))
-      scanner_.fail(field, "\"" + std::string(line.substr(0, 40)) + "\"", "a number");
+    if (!parse(line, value)) scanner_.fail(field, "\"" + std::string(line.substr(0, 40)) + "\"", "a number");
     return value;
   }
   /// A number that some files leave empty.
@@ -56,8 +55,7 @@ class Fields {
   /// Every number up to the first line that is none.
   std::vector<double> numbers_ahead(const char* field) {
     std::vector<double> values;
-    for (double value; parse(scanner_.line_ahead(), value); values.push_back(value))
-      scanner_.next_line(field);
+    for (double value; parse(scanner_.line_ahead(), value); values.push_back(value)) scanner_.next_line(field);
     return values;
   }
   const TextScanner& scanner() const { return scanner_; }
@@ -131,8 +129,7 @@ Planes planes_of(const std::vector<double>& listed, int symmetry) {
 /// The widest gap between planes [deg], once around.
 double widest_gap(const Planes& planes) {
   double widest = planes.c.front() + 360 - planes.c.back();
-  for (std::size_t i = 1; i < planes.c.size(); ++i)
-    widest = std::max(widest, planes.c[i] - planes.c[i - 1]);
+  for (std::size_t i = 1; i < planes.c.size(); ++i) widest = std::max(widest, planes.c[i] - planes.c[i - 1]);
   return widest;
 }
 
@@ -141,8 +138,7 @@ void check_order(const TextScanner& scanner, const std::vector<double>& c) {
   int steps_back = 0;
   for (std::size_t i = 1; i < c.size(); ++i) {
     steps_back += c[i] <= c[i - 1];
-    if (steps_back > (c.front() > c.back() ? 1 : 0) ||
-        std::abs(c[i] - c.front()) > 360 + same_plane)
+    if (steps_back > (c.front() > c.back() ? 1 : 0) || std::abs(c[i] - c.front()) > 360 + same_plane)
       scanner.fail("C angles", format_number(c[i]) + " after " + format_number(c[i - 1]),
                    "ascending angles within one turn");
   }
@@ -155,8 +151,7 @@ std::size_t planes_expected(const EulumdatFile& f, Problems& deviations) {
   const Planes planes = planes_of(f.c, f.symmetry);
   if (planes.stored == planes.c.size()) {
     if (mc > 1)
-      deviations.push_back(
-          {"Mc", std::to_string(mc) + ", the stored planes alone", "the number of all planes", false});
+      deviations.push_back({"Mc", std::to_string(mc) + ", the stored planes alone", "the number of all planes", false});
     return planes.stored;
   }
   // Where no plane lies in the plane of symmetry the first of the next half is stored too.
@@ -179,11 +174,10 @@ void check_planes(const TextScanner& scanner, EulumdatFile& f, Problems& deviati
     scanner.fail("luminous intensities",
                  std::to_string(found) + " numbers up to " +
                      (scanner.at_end() ? "the end of the file" : "\"" + scanner.rest() + "\""),
-                 std::to_string(expected * ng) + " (" + std::to_string(expected) + " planes of " +
-                     std::to_string(ng) + " gamma angles)");
+                 std::to_string(expected * ng) + " (" + std::to_string(expected) + " planes of " + std::to_string(ng) +
+                     " gamma angles)");
   } else if (f.symmetry == 0 && !closed) {
-    deviations.push_back({"C angles",
-                          format_number(f.c.front()) + " to " + format_number(f.c.back()),
+    deviations.push_back({"C angles", format_number(f.c.front()) + " to " + format_number(f.c.back()),
                           "a full turn; closed by interpolation", false});
   }
 }
@@ -202,24 +196,18 @@ void check(const EulumdatFile& f, std::size_t lamp_sets, Problems& deviations) {
   if (f.gamma.size() > 361) note("Ng", std::to_string(f.gamma.size()), "at most 361");
   if (f.type < 1) note("Ityp", std::to_string(f.type), "1 to 3");
   if (f.c_step > 0 && f.c.size() > 1 && !even(f.c, f.c_step))
-    note("Dc", format_number(f.c_step),
-         "the distance of the C angles, or 0 if uneven; the angles are used");
+    note("Dc", format_number(f.c_step), "the distance of the C angles, or 0 if uneven; the angles are used");
   if (f.g_step > 0 && !even(f.gamma, f.g_step))
-    note("Dg", format_number(f.g_step),
-         "the distance of the G angles, or 0 if uneven; the angles are used");
+    note("Dg", format_number(f.g_step), "the distance of the G angles, or 0 if uneven; the angles are used");
   if (f.symmetry != 1 && f.c.front() != 0) note("first C angle", format_number(f.c.front()), "0");
   if (f.c.back() >= 360) note("last C angle", format_number(f.c.back()), "less than 360");
   if (lamp_sets == 0) note("lamp sets", "none", "1 to 20");
   for (const EulumdatFile::LampSet& set : f.lamp_sets) {
-    if (set.lamps == 0)
-      note("number of lamps", "0", "a positive number, negative for absolute photometry");
-    if (!(set.lumens > 0))
-      note("total luminous flux of lamps", format_number(set.lumens), "a positive number");
+    if (set.lamps == 0) note("number of lamps", "0", "a positive number, negative for absolute photometry");
+    if (!(set.lumens > 0)) note("total luminous flux of lamps", format_number(set.lumens), "a positive number");
   }
-  if (f.light_output_ratio <= 0)
-    note("light output ratio", format_number(f.light_output_ratio), "more than 0");
-  if (f.conversion_factor != 1)
-    note("conversion factor", format_number(f.conversion_factor), "usually 1; applied");
+  if (f.light_output_ratio <= 0) note("light output ratio", format_number(f.light_output_ratio), "more than 0");
+  if (f.conversion_factor != 1) note("conversion factor", format_number(f.conversion_factor), "usually 1; applied");
   if (f.tilt != 0) note("tilt", format_number(f.tilt), "usually 0; not applied");
 }
 
@@ -264,8 +252,8 @@ EulumdatFile read(Fields& in, Problems& deviations) {
   f.intensity = in.numbers_ahead("luminous intensities");
   check_planes(in.scanner(), f, deviations);
   if (!in.scanner().only_blanks_left())
-    deviations.push_back({"after the last intensity",
-                          "\"" + in.scanner().rest() + "\"", "the end of the file; ignored", false, in.scanner().line()});
+    deviations.push_back({"after the last intensity", "\"" + in.scanner().rest() + "\"", "the end of the file; ignored",
+                          false, in.scanner().line()});
   check(f, f.lamp_sets.size(), deviations);
   return f;
 }
@@ -287,8 +275,8 @@ EulumdatFile read_eulumdat(std::string_view text, const std::string& name, Probl
   EulumdatFile file = read(in, deviations);
   if (!in.commas_could_be_thousands()) return file;
   if (!in.has_points()) {
-    deviations.push_back({"commas", "some that can part thousands, and no decimal points",
-                          "decimal points; read as such", false});
+    deviations.push_back(
+        {"commas", "some that can part thousands, and no decimal points", "decimal points; read as such", false});
     return file;
   }
   deviations = before;
@@ -306,12 +294,10 @@ void write_eulumdat(std::ostream& stream, const EulumdatFile& f) {
   number(f.c_step);
   line(f.gamma.size());
   number(f.g_step);
-  for (const std::string* text : {&f.report, &f.name, &f.number, &f.file_name, &f.date})
-    line(*text);
+  for (const std::string* text : {&f.report, &f.name, &f.number, &f.file_name, &f.date}) line(*text);
   for (double v : {f.length, f.width, f.height, f.luminous_length, f.luminous_width}) number(v);
   for (double v : f.luminous_height) number(v);
-  for (double v : {f.downward_fraction, f.light_output_ratio, f.conversion_factor, f.tilt})
-    number(v);
+  for (double v : {f.downward_fraction, f.light_output_ratio, f.conversion_factor, f.tilt}) number(v);
   line(f.lamp_sets.size());
   for (const EulumdatFile::LampSet& set : f.lamp_sets) {
     line(set.lamps);

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <gonio/mapping/base/problem.h>
-
 #include <array>
 #include <ostream>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include <gonio/mapping/base/problem.h>
 
 namespace gonio {
 

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <gonio/mapping/base/problem.h>
-
 #include <optional>
 #include <ostream>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include <gonio/mapping/base/problem.h>
 
 namespace gonio {
 
@@ -16,7 +16,7 @@ struct IesFile {
   enum class Tilt { none, include, file };
   enum class Type { c = 1, b = 2, a = 3 };
 
-  std::string standard;  ///< first line, such as "IESNA:LM-63-2002"; empty for LM-63-1986
+  std::string standard;             ///< first line, such as "IESNA:LM-63-2002"; empty for LM-63-1986
   std::vector<std::string> labels;  ///< lines between the first and TILT=, keywords and all
 
   Tilt tilt = Tilt::none;

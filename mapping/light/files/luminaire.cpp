@@ -1,11 +1,11 @@
+#include <algorithm>
+#include <cmath>
+
 #include <gonio/mapping/base/bytes.h>
 #include <gonio/mapping/base/error.h>
 #include <gonio/mapping/base/format_number.h>
 #include <gonio/mapping/light/files/luminaire.h>
 #include <gonio/mapping/light/files/text_scanner.h>
-
-#include <algorithm>
-#include <cmath>
 
 namespace gonio {
 namespace {
@@ -36,17 +36,14 @@ double tilt_factor(const IesFile& file, double degrees) {
 LightSymmetry ies_symmetry(const std::vector<double>& horizontal, Problems& deviations) {
   const double first = horizontal.front(), span = horizontal.back() - first;
   const auto is = [](double a, double b) { return std::abs(a - b) < 1e-6; };
-  const auto multiple = [&](double angle, double of) {
-    return is(angle, of * std::round(angle / of));
-  };
+  const auto multiple = [&](double angle, double of) { return is(angle, of * std::round(angle / of)); };
   if (horizontal.size() == 1) return LightSymmetry::rotational;
   if (is(span, 90) && multiple(first, 90)) return LightSymmetry::quadrant;
   if (is(span, 180) && multiple(first, 180)) return LightSymmetry::c0_c180;
   if (is(span, 180) && multiple(first, 90)) return LightSymmetry::c90_c270;
   if (is(span, 360)) return LightSymmetry::none;
-  deviations.push_back(
-      {"horizontal angles", format_number(first) + " to " + format_number(horizontal.back()),
-       "0 to 90, 0 to 180, 90 to 270 or 0 to 360; closed to a full turn by interpolation", false});
+  deviations.push_back({"horizontal angles", format_number(first) + " to " + format_number(horizontal.back()),
+                        "0 to 90, 0 to 180, 90 to 270 or 0 to 360; closed to a full turn by interpolation", false});
   return LightSymmetry::none;
 }
 
@@ -100,8 +97,7 @@ void mirror_to_negative(std::vector<double>& angles, std::vector<double>& cd, bo
   for (std::size_t i = 0; i < m; ++i) {
     const std::size_t from = i < n - 1 ? n - 1 - i : i - (n - 1);
     for (std::size_t k = 0; k < others; ++k)
-      (rows ? result[i * others + k] : result[k * m + i]) =
-          rows ? cd[from * others + k] : cd[k * n + from];
+      (rows ? result[i * others + k] : result[k * m + i]) = rows ? cd[from * others + k] : cd[k * n + from];
   }
   angles = std::move(all);
   cd = std::move(result);
@@ -127,8 +123,7 @@ EulumdatLikeness eulumdat_likeness(std::string_view text) {
   struct Limit {
     int line, lowest, highest;
   };
-  constexpr Limit limits[] = {
-      {2, 0, 3}, {3, 0, 4}, {4, 1, most_eulumdat_angles}, {6, 2, most_eulumdat_angles}};
+  constexpr Limit limits[] = {{2, 0, 3}, {3, 0, 4}, {4, 1, most_eulumdat_angles}, {6, 2, most_eulumdat_angles}};
   bool in_range = true;
   std::size_t next = 0;
   for (int number = 1; number <= 7; ++number) {
@@ -137,10 +132,8 @@ EulumdatLikeness eulumdat_likeness(std::string_view text) {
     for (const Limit& limit : limits) {
       if (limit.line != number) continue;
       double value;
-      if (!parse_number(text.substr(next, end - next), Comma::decimal, value))
-        return EulumdatLikeness::none;
-      in_range =
-          in_range && value == std::floor(value) && value >= limit.lowest && value <= limit.highest;
+      if (!parse_number(text.substr(next, end - next), Comma::decimal, value)) return EulumdatLikeness::none;
+      in_range = in_range && value == std::floor(value) && value >= limit.lowest && value <= limit.highest;
     }
     next = end + (text.substr(end, 2) == "\r\n" ? 2 : 1);
   }
@@ -153,23 +146,20 @@ Luminaire to_luminaire(const IesFile& file, const std::string& name, const Light
                        Problems& deviations) {
   Luminaire light;
   static constexpr const char* type_names[] = {"C", "B", "A"};
-  light.format = (file.standard.empty() ? std::string("IES LM-63-1986") : "IES " + file.standard) +
-                 ", type " + type_names[static_cast<int>(file.type) - 1];
+  light.format = (file.standard.empty() ? std::string("IES LM-63-1986") : "IES " + file.standard) + ", type " +
+                 type_names[static_cast<int>(file.type) - 1];
   light.manufacturer = to_utf8(file.keyword("MANUFAC"));
   light.name = to_utf8(file.keyword("LUMINAIRE"));
   light.number = to_utf8(file.keyword("LUMCAT"));
   light.lamp = to_utf8(file.keyword("LAMP"));
-  if (const std::string unit = file.keyword("_INTENSITYUNITS"); !unit.empty())
-    light.unit = to_utf8(unit);
+  if (const std::string unit = file.keyword("_INTENSITYUNITS"); !unit.empty()) light.unit = to_utf8(unit);
   light.watts = std::max(file.watts, 0.0);
   light.absolute = file.lumens_per_lamp < 0;
-  if (file.lumens_per_lamp > 0 && file.lamps > 0)
-    light.lamp_lumens = file.lumens_per_lamp * file.lamps;
+  if (file.lumens_per_lamp > 0 && file.lamps > 0) light.lamp_lumens = file.lumens_per_lamp * file.lamps;
   for (const char* key : {"_TOTALLUMINAIRELUMENS", "TOTALLUMINAIRELUMENS"}) {
     const std::string text = file.keyword(key);
-    if (double lumens; (parse_number(text, Comma::thousands, lumens) ||
-                        parse_number(text, Comma::decimal, lumens)) &&
-                       lumens > 0)
+    if (double lumens;
+        (parse_number(text, Comma::thousands, lumens) || parse_number(text, Comma::decimal, lumens)) && lumens > 0)
       light.stated_lumens = lumens;
   }
   set_opening(light, file, std::abs(std::sin(options.ies_zero)) > 0.5);
@@ -207,9 +197,7 @@ Luminaire to_luminaire(const IesFile& file, const std::string& name, const Light
       // Polar axis horizontal: H is the angle in planes through the axis at H = +-90, V turns the
       // plane about it; (0, 0) is the nadir, (0, V = 90) is horizontal in the 0-degree plane.
       if (folded.c.size() == 1 || folded.gamma.size() == 1)
-        throw Error(
-            name +
-            ": type B: found a single angle, expected at least 2 vertical and horizontal ones");
+        throw Error(name + ": type B: found a single angle, expected at least 2 vertical and horizontal ones");
       FoldedLight turned;
       turned.sector = true;
       turned.unit = light.unit;
@@ -233,8 +221,8 @@ Luminaire to_luminaire(const IesFile& file, const std::string& name, const Light
   return light;
 }
 
-Luminaire to_luminaire(const EulumdatFile& file, const std::string& name,
-                       const LightOptions& options, Problems& deviations) {
+Luminaire to_luminaire(const EulumdatFile& file, const std::string& name, const LightOptions& options,
+                       Problems& deviations) {
   Luminaire light;
   light.format = "EULUMDAT";
   light.manufacturer = to_utf8(file.company);
@@ -258,20 +246,17 @@ Luminaire to_luminaire(const EulumdatFile& file, const std::string& name,
       deviations.push_back({"lamp sets", std::to_string(file.lamp_sets.size()),
                             "alternatives; set " + std::to_string(options.lamp_set) + " is taken", false});
   }
-  if (!light.lamp_lumens)
-    deviations.push_back({"lamp flux", "none", "a positive number; 1000 lm are taken", false});
+  if (!light.lamp_lumens) deviations.push_back({"lamp flux", "none", "a positive number; 1000 lm are taken", false});
   light.downward_fraction = file.downward_fraction / 100;
   light.round = file.luminous_width == 0 && file.luminous_length > 0;
   const double y = file.luminous_length / 1000, x = light.round ? y : file.luminous_width / 1000;
-  light.size = {x, y,
-                *std::max_element(file.luminous_height.begin(), file.luminous_height.end()) / 1000};
+  light.size = {x, y, *std::max_element(file.luminous_height.begin(), file.luminous_height.end()) / 1000};
 
   if (!(file.conversion_factor > 0))
     throw Error(name + ": conversion factor: found " + format_number(file.conversion_factor) +
                 ", expected a positive number");
-  static constexpr LightSymmetry symmetries[] = {LightSymmetry::none, LightSymmetry::rotational,
-                                                 LightSymmetry::c0_c180, LightSymmetry::c90_c270,
-                                                 LightSymmetry::quadrant};
+  static constexpr LightSymmetry symmetries[] = {LightSymmetry::none, LightSymmetry::rotational, LightSymmetry::c0_c180,
+                                                 LightSymmetry::c90_c270, LightSymmetry::quadrant};
   FoldedLight folded;
   folded.symmetry = light.symmetry = symmetries[file.symmetry];
   folded.c = file.stored_c();
@@ -297,15 +282,13 @@ LightFormat light_format(std::string_view text) {
   return likeness == EulumdatLikeness::numbers ? LightFormat::eulumdat : LightFormat::unknown;
 }
 
-Luminaire load_light(const std::filesystem::path& path, const LightOptions& options,
-                     Problems& deviations) {
+Luminaire load_light(const std::filesystem::path& path, const LightOptions& options, Problems& deviations) {
   const std::string text = read_text(path, deviations), name = path.string();
   switch (light_format(text)) {
     case LightFormat::ies: {
       IesFile file = read_ies(text, name, deviations);
       if (file.tilt == IesFile::Tilt::file) {
-        const std::filesystem::path beside =
-            path.parent_path() / std::filesystem::path(file.tilt_file).filename();
+        const std::filesystem::path beside = path.parent_path() / std::filesystem::path(file.tilt_file).filename();
         if (std::filesystem::is_regular_file(beside))
           read_ies_tilt(read_text(beside, deviations), beside.string(), file);
       }
@@ -327,15 +310,13 @@ Luminaire load_light(const std::filesystem::path& path, const LightOptions& opti
 }
 
 IesFile to_ies(const Luminaire& light, const LightOptions& options) {
-  const LightDiagram diagram =
-      in_frame(light.diagram, ies_frame(options.ies_zero, options.clockwise));
+  const LightDiagram diagram = in_frame(light.diagram, ies_frame(options.ies_zero, options.clockwise));
   const LightSymmetry symmetry = find_symmetry(diagram);
   FoldedLight folded = fold(diagram, symmetry);
   IesFile file;
   file.standard = "IESNA:LM-63-2002";
   const auto label = [&](const char* key, const std::string& value) {
-    file.labels.push_back("[" + std::string(key) + "] " +
-                          (value.empty() ? "unknown" : shortened(value, 120)));
+    file.labels.push_back("[" + std::string(key) + "] " + (value.empty() ? "unknown" : shortened(value, 120)));
   };
   label("TEST", "");
   label("TESTLAB", "");
@@ -362,8 +343,7 @@ namespace {
 /// True if programs that find the planes of Isym 3 by index, as mc1 = 3 Mc/4 + 1 says, find C270.
 bool holds_from_c270(const LightDiagram& d) {
   Problems none;
-  const std::vector<double> c =
-      unfold(fold(d, LightSymmetry::c90_c270), d.frame, "EULUMDAT", none).c;
+  const std::vector<double> c = unfold(fold(d, LightSymmetry::c90_c270), d.frame, "EULUMDAT", none).c;
   const std::size_t mc = c.size() - 1;
   return mc % 2 == 0 && std::abs(c[3 * mc / 4] - 1.5 * pi<double>) < 1e-9;
 }
@@ -376,18 +356,15 @@ EulumdatFile to_eulumdat(const Luminaire& light) {
   if (symmetry == LightSymmetry::c90_c270 && !holds_from_c270(full)) symmetry = LightSymmetry::none;
   const FoldedLight folded = fold(full, symmetry);
   Problems none;
-  const LightDiagram diagram =
-      unfold(folded, LightFrame{}, "EULUMDAT", none);  // as a reader will see it
+  const LightDiagram diagram = unfold(folded, LightFrame{}, "EULUMDAT", none);  // as a reader will see it
   EulumdatFile file;
   file.company = shortened(light.manufacturer, 78);
   file.name = shortened(light.name, 78);
   file.number = shortened(light.number, 78);
   file.type = symmetry == LightSymmetry::rotational ? 1 : light.size.y > 2 * light.size.x ? 2 : 3;
-  static constexpr LightSymmetry order[] = {LightSymmetry::none, LightSymmetry::rotational,
-                                            LightSymmetry::c0_c180, LightSymmetry::c90_c270,
-                                            LightSymmetry::quadrant};
-  file.symmetry =
-      static_cast<int>(std::find(std::begin(order), std::end(order), symmetry) - std::begin(order));
+  static constexpr LightSymmetry order[] = {LightSymmetry::none, LightSymmetry::rotational, LightSymmetry::c0_c180,
+                                            LightSymmetry::c90_c270, LightSymmetry::quadrant};
+  file.symmetry = static_cast<int>(std::find(std::begin(order), std::end(order), symmetry) - std::begin(order));
   // A width of 0 is a circle; the format has no ellipses.
   const bool circle = light.round && std::abs(light.size.x - light.size.y) <= 1e-6 * light.size.x;
   file.length = file.luminous_length = light.size.y * 1000;
@@ -407,8 +384,7 @@ EulumdatFile to_eulumdat(const Luminaire& light) {
   const double scale = 1000 / set.lumens;
   file.lamp_sets.push_back(set);
 
-  for (std::size_t i = 0; i + 1 < diagram.c.size(); ++i)
-    file.c.push_back(diagram.c[i] * 180 / pi<double>);
+  for (std::size_t i = 0; i + 1 < diagram.c.size(); ++i) file.c.push_back(diagram.c[i] * 180 / pi<double>);
   file.gamma = folded.gamma;
   file.intensity = folded.cd;
   if (symmetry == LightSymmetry::c90_c270) {

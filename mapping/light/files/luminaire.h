@@ -1,13 +1,13 @@
 #pragma once
 
-#include <gonio/mapping/light/files/eulumdat.h>
-#include <gonio/mapping/light/files/ies.h>
-#include <gonio/mapping/light/diagram/unfold.h>
-
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
+
+#include <gonio/mapping/light/diagram/unfold.h>
+#include <gonio/mapping/light/files/eulumdat.h>
+#include <gonio/mapping/light/files/ies.h>
 
 namespace gonio {
 
@@ -22,15 +22,14 @@ struct Luminaire {
   LightSymmetry symmetry = LightSymmetry::none;
   std::string format;  ///< "IES" or "EULUMDAT" or "EXR", with version and photometric type
   std::string manufacturer, name, number, lamp;
-  std::string unit = "cd";  ///< of the intensities; some files hold radiometric values, say mW/sr
-  bool absolute = false;    ///< absolute photometry: lamp_lumens, if set, is that of the luminaire
-  std::optional<double> lamp_lumens;  ///< all lamps together [lm]
-  std::optional<double>
-      stated_lumens;  ///< luminous flux of the luminaire as the file states it [lm]
+  std::string unit = "cd";                  ///< of the intensities; some files hold radiometric values, say mW/sr
+  bool absolute = false;                    ///< absolute photometry: lamp_lumens, if set, is that of the luminaire
+  std::optional<double> lamp_lumens;        ///< all lamps together [lm]
+  std::optional<double> stated_lumens;      ///< luminous flux of the luminaire as the file states it [lm]
   std::optional<double> downward_fraction;  ///< as the file states it, 0 to 1
   double watts = 0;                         ///< 0: unknown
   Vec3<double> size{0, 0, 0};               ///< luminous opening along x, y, z [m]; 0: point
-  bool round = false;  ///< the opening is an ellipse of x by y, a circle where they are equal
+  bool round = false;                       ///< the opening is an ellipse of x by y, a circle where they are equal
   /// What in an IES file looks as if its 0-degree plane were C0 (LightOptions::ies_zero = 0), as
   /// words for people; empty if nothing does.
   std::string other_zero;
@@ -51,10 +50,9 @@ struct LightOptions {
 
 /// The meaning of a parsed file. @param name for messages. @throws Error if angles or values cannot
 /// be used, or the lamp set does not exist.
-Luminaire to_luminaire(const IesFile& file, const std::string& name, const LightOptions& options,
+Luminaire to_luminaire(const IesFile& file, const std::string& name, const LightOptions& options, Problems& deviations);
+Luminaire to_luminaire(const EulumdatFile& file, const std::string& name, const LightOptions& options,
                        Problems& deviations);
-Luminaire to_luminaire(const EulumdatFile& file, const std::string& name,
-                       const LightOptions& options, Problems& deviations);
 
 enum class LightFormat { unknown, ies, eulumdat };
 
@@ -66,8 +64,7 @@ LightFormat light_format(std::string_view text);
 /// Reads an IES or EULUMDAT file, told by content, in ASCII, UTF-8 or UTF-16. A TILT file is looked
 /// for beside it.
 /// @throws Error naming the file if it cannot be read, is neither, or is broken.
-Luminaire load_light(const std::filesystem::path& path, const LightOptions& options,
-                     Problems& deviations);
+Luminaire load_light(const std::filesystem::path& path, const LightOptions& options, Problems& deviations);
 Luminaire load_light(const std::filesystem::path& path, const LightOptions& options = {});
 
 /// The luminaire as an LM-63-2002 file of type C, with the strongest symmetry that holds. Absolute

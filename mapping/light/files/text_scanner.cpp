@@ -1,11 +1,11 @@
-#include <gonio/mapping/base/error.h>
-#include <gonio/mapping/base/format_number.h>
-#include <gonio/mapping/light/files/text_scanner.h>
-
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+
+#include <gonio/mapping/base/error.h>
+#include <gonio/mapping/base/format_number.h>
+#include <gonio/mapping/light/files/text_scanner.h>
 
 namespace gonio {
 namespace {
@@ -47,8 +47,7 @@ void append_utf8(std::string& text, unsigned c) {
   } else if (c < 0x10000) {
     add(0xE0 | c >> 12), add(0x80 | (c >> 6 & 0x3F)), add(0x80 | (c & 0x3F));
   } else {
-    add(0xF0 | c >> 18), add(0x80 | (c >> 12 & 0x3F)), add(0x80 | (c >> 6 & 0x3F)),
-        add(0x80 | (c & 0x3F));
+    add(0xF0 | c >> 18), add(0x80 | (c >> 12 & 0x3F)), add(0x80 | (c >> 6 & 0x3F)), add(0x80 | (c & 0x3F));
   }
 }
 
@@ -73,10 +72,9 @@ bool parse_number(std::string_view text, Comma comma, double& value) {
 std::string without_utf16(std::string bytes) {
   const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(bytes[k]); };
   if (bytes.size() < 4) return bytes;
-  const bool little = (byte(0) == 0xFF && byte(1) == 0xFE) ||
-                      (byte(0) > 0 && byte(1) == 0 && byte(2) > 0 && byte(3) == 0);
-  const bool big = (byte(0) == 0xFE && byte(1) == 0xFF) ||
-                   (byte(0) == 0 && byte(1) > 0 && byte(2) == 0 && byte(3) > 0);
+  const bool little =
+      (byte(0) == 0xFF && byte(1) == 0xFE) || (byte(0) > 0 && byte(1) == 0 && byte(2) > 0 && byte(3) == 0);
+  const bool big = (byte(0) == 0xFE && byte(1) == 0xFF) || (byte(0) == 0 && byte(1) > 0 && byte(2) == 0 && byte(3) > 0);
   if (!little && !big) return bytes;
   const auto unit = [&](std::size_t k) {
     return static_cast<unsigned>(little ? byte(k) | byte(k + 1) << 8 : byte(k) << 8 | byte(k + 1));
@@ -84,8 +82,7 @@ std::string without_utf16(std::string bytes) {
   std::string text;
   for (std::size_t k = unit(0) == 0xFEFF ? 2 : 0; k + 1 < bytes.size(); k += 2) {
     unsigned c = unit(k);
-    if (c >= 0xD800 && c < 0xDC00 && k + 3 < bytes.size() && unit(k + 2) >= 0xDC00 &&
-        unit(k + 2) < 0xE000) {
+    if (c >= 0xD800 && c < 0xDC00 && k + 3 < bytes.size() && unit(k + 2) >= 0xDC00 && unit(k + 2) < 0xE000) {
       c = 0x10000 + ((c - 0xD800) << 10) + (unit(k + 2) - 0xDC00);
       k += 2;
     }
@@ -134,14 +131,13 @@ std::string shortened(const std::string& text, std::size_t bytes) {
   return text.substr(0, bytes);
 }
 
-TextScanner::TextScanner(std::string name, std::string_view text)
-    : name_(std::move(name)), text_(text) {
+TextScanner::TextScanner(std::string name, std::string_view text) : name_(std::move(name)), text_(text) {
   if (text_.substr(0, 3) == "\xEF\xBB\xBF") next_ = 3;
 }
 
 void TextScanner::fail(const char* field, std::string_view found, std::string_view expected) const {
-  throw Error(name_ + ": line " + std::to_string(last_line_) + ": " + field + ": found " +
-              std::string(found) + ", expected " + std::string(expected));
+  throw Error(name_ + ": line " + std::to_string(last_line_) + ": " + field + ": found " + std::string(found) +
+              ", expected " + std::string(expected));
 }
 
 std::size_t TextScanner::end_of_line() const noexcept {
@@ -159,16 +155,15 @@ std::string_view TextScanner::next_line(const char* field) {
   const std::string_view line = text_.substr(next_, end - next_);
   next_ = end;
   if (next_ < text_.size() && text_[next_] == '\r') ++next_;
-  if (next_ < text_.size() && text_[next_] == '\n' && (next_ == end || text_[next_ - 1] == '\r'))
-    ++next_;
+  if (next_ < text_.size() && text_[next_] == '\n' && (next_ == end || text_[next_ - 1] == '\r')) ++next_;
   ++line_;
   return trimmed(line);
 }
 
 bool TextScanner::ends_token(std::size_t at) const noexcept {
   if (!is_separator(text_[at])) return false;
-  const bool within = text_[at] == ',' && at > 0 && at + 1 < text_.size() &&
-                      is_digit(text_[at - 1]) && is_digit(text_[at + 1]);
+  const bool within =
+      text_[at] == ',' && at > 0 && at + 1 < text_.size() && is_digit(text_[at - 1]) && is_digit(text_[at + 1]);
   return !within || comma_ == Comma::separator;
 }
 
@@ -205,8 +200,7 @@ std::vector<double> TextScanner::next_numbers(const char* field, std::size_t cou
   while (values.size() < count) {
     skip_separators();
     if (at_end())
-      fail(field, "the end of the file after " + std::to_string(values.size()) + " numbers",
-           std::to_string(count));
+      fail(field, "the end of the file after " + std::to_string(values.size()) + " numbers", std::to_string(count));
     values.push_back(next_number(field));
   }
   return values;
@@ -222,14 +216,13 @@ bool TextScanner::number_ahead() const {
 int TextScanner::next_integer(const char* field, int lowest, int highest) {
   const double value = next_number(field);
   if (value != std::floor(value) || value < lowest || value > highest)
-    fail(field, format_number(value),
-         "an integer from " + std::to_string(lowest) + " to " + std::to_string(highest));
+    fail(field, format_number(value), "an integer from " + std::to_string(lowest) + " to " + std::to_string(highest));
   return static_cast<int>(value);
 }
 
 bool TextScanner::only_blanks_left() const noexcept {
-  return std::all_of(text_.begin() + static_cast<std::ptrdiff_t>(std::min(next_, text_.size())),
-                     text_.end(), [](char c) { return is_separator(c) || c == '\x1a'; });
+  return std::all_of(text_.begin() + static_cast<std::ptrdiff_t>(std::min(next_, text_.size())), text_.end(),
+                     [](char c) { return is_separator(c) || c == '\x1a'; });
 }
 
 std::string TextScanner::rest() const {

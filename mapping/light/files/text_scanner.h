@@ -44,8 +44,7 @@ class TextScanner {
   /// What is left, on one line, shortened to 40 characters: for messages.
   std::string rest() const;
 
-  [[noreturn]] void fail(const char* field, std::string_view found,
-                         std::string_view expected) const;
+  [[noreturn]] void fail(const char* field, std::string_view found, std::string_view expected) const;
 
  private:
   std::size_t end_of_line() const noexcept;

@@ -1,9 +1,10 @@
-#include <gonio/mapping/base/error.h>
-#include <gonio/mapping/light/texture/light_texture.h>
-
 #include <algorithm>
 #include <cmath>
+
 #include <glm/geometric.hpp>
+
+#include <gonio/mapping/base/error.h>
+#include <gonio/mapping/light/texture/light_texture.h>
 
 namespace gonio {
 namespace {
@@ -45,8 +46,7 @@ class Continued {
 /// Coefficients of the cubic B-spline that interpolates `values`: the inverse of the filter (1 4
 /// 1)/6 along both axes, h_k = -6 z / (1 - z^2) z^|k| with z = sqrt(3) - 2, cut where it is below
 /// rounding.
-std::vector<double> bspline_coefficients(const std::vector<double>& values, int n, int m,
-                                         const Continued& at) {
+std::vector<double> bspline_coefficients(const std::vector<double>& values, int n, int m, const Continued& at) {
   constexpr int reach = 28;
   const double z = std::sqrt(3.0) - 2;
   std::array<double, reach + 1> h;
@@ -58,9 +58,8 @@ std::vector<double> bspline_coefficients(const std::vector<double>& values, int 
       for (int j = 0; j < n; ++j) {
         double sum = h[0] * from[at.index(i, j)];
         for (int k = 1; k <= reach; ++k)
-          sum += h[static_cast<std::size_t>(k)] *
-                 (along_c ? from[at.index(i + k, j)] + from[at.index(i - k, j)]
-                          : from[at.index(i, j + k)] + from[at.index(i, j - k)]);
+          sum += h[static_cast<std::size_t>(k)] * (along_c ? from[at.index(i + k, j)] + from[at.index(i - k, j)]
+                                                           : from[at.index(i, j + k)] + from[at.index(i, j - k)]);
         to[at.index(i, j)] = sum;
       }
     return to;
@@ -76,29 +75,24 @@ std::array<float, 4> filter_weights(LightFilter filter, float t) noexcept {
     case LightFilter::bilinear:
       return {0, s, t, 0};
     case LightFilter::catmull_rom:
-      return {-0.5f * t * s * s, 1 + t * t * (1.5f * t - 2.5f), 1 + s * s * (1.5f * s - 2.5f),
-              -0.5f * s * t * t};
+      return {-0.5f * t * s * s, 1 + t * t * (1.5f * t - 2.5f), 1 + s * s * (1.5f * s - 2.5f), -0.5f * s * t * t};
     case LightFilter::bspline:
-      return {s * s * s / 6, (4 + 3 * t * t * (t - 2)) / 6, (4 + 3 * s * s * (s - 2)) / 6,
-              t * t * t / 6};
+      return {s * s * s / 6, (4 + 3 * t * t * (t - 2)) / 6, (4 + 3 * s * s * (s - 2)) / 6, t * t * t / 6};
     case LightFilter::mitchell:
       break;
   }
   // B = C = 1/3: a third of the B-spline and two thirds of Catmull-Rom.
-  const auto a = filter_weights(LightFilter::bspline, t),
-             b = filter_weights(LightFilter::catmull_rom, t);
+  const auto a = filter_weights(LightFilter::bspline, t), b = filter_weights(LightFilter::catmull_rom, t);
   std::array<float, 4> w;
   for (std::size_t k = 0; k < 4; ++k) w[k] = (a[k] + 2 * b[k]) / 3;
   return w;
 }
 
-LightTexture::LightTexture(const LightDiagram& diagram, LightFilter filter, int most_cells)
-    : filter_(filter) {
+LightTexture::LightTexture(const LightDiagram& diagram, LightFilter filter, int most_cells) : filter_(filter) {
   check(diagram);
   const LightDiagram d = without_dark_hemisphere(diagram);
   max_cd_ = gonio::max_intensity(d);
-  if (!(max_cd_ > 0))
-    throw Error("light texture: found a diagram that is dark everywhere, expected some light");
+  if (!(max_cd_ > 0)) throw Error("light texture: found a diagram that is dark everywhere, expected some light");
   frame_ = d.frame;
   nadir_ = Vec3<float>(frame_.nadir), c0_ = Vec3<float>(frame_.c0), c90_ = Vec3<float>(frame_.c90);
 
@@ -127,15 +121,13 @@ LightTexture::LightTexture(const LightDiagram& diagram, LightFilter filter, int 
     return sum / m_c_;
   };
   const auto border = [&](int i, int outside, int inside, bool pole) {
-    if (pole && filter == LightFilter::mitchell)
-      return 2 * ring_mean(inside) - values[at.index(i, inside)];
+    if (pole && filter == LightFilter::mitchell) return 2 * ring_mean(inside) - values[at.index(i, inside)];
     return values[at.index(i, outside)];
   };
   texels_.reserve(static_cast<std::size_t>(m_c_) * static_cast<std::size_t>(width()));
   for (int i = 0; i < m_c_; ++i) {
     texels_.push_back(static_cast<float>(border(i, -1, 1, pole_first)));
-    for (int j = 0; j < n_gamma_; ++j)
-      texels_.push_back(static_cast<float>(values[at.index(i, j)]));
+    for (int j = 0; j < n_gamma_; ++j) texels_.push_back(static_cast<float>(values[at.index(i, j)]));
     texels_.push_back(static_cast<float>(border(i, n_gamma_, n_gamma_ - 2, pole_last)));
   }
 }
@@ -146,8 +138,7 @@ float LightTexture::lookup(const Vec3<float>& w) const noexcept {
   const float s = (gamma - gamma_from_) / gamma_step_;
   if (s < -1e-4f || s > static_cast<float>(n_gamma_ - 1) + 1e-4f) return 0;
   const int j = std::clamp(static_cast<int>(s), 0, n_gamma_ - 2);
-  const std::array<float, 4> along =
-      filter_weights(filter_, std::clamp(s - static_cast<float>(j), 0.0f, 1.0f));
+  const std::array<float, 4> along = filter_weights(filter_, std::clamp(s - static_cast<float>(j), 0.0f, 1.0f));
 
   const auto row = [&](int i) {
     const float* texel = texels_.data() + i * width() + j;
@@ -159,23 +150,19 @@ float LightTexture::lookup(const Vec3<float>& w) const noexcept {
   const int i = std::min(static_cast<int>(t), m_c_ - 1);
   const std::array<float, 4> across = filter_weights(filter_, t - static_cast<float>(i));
   float sum = 0;
-  for (int k = 0; k < 4; ++k)
-    sum += across[static_cast<std::size_t>(k)] * row((i + k - 1 + m_c_) % m_c_);
+  for (int k = 0; k < 4; ++k) sum += across[static_cast<std::size_t>(k)] * row((i + k - 1 + m_c_) % m_c_);
   return std::max(sum, 0.0f);
 }
 
-float point_light(const LightTexture& texture, float intensity,
-                  const Vec3<float>& offset) noexcept {
+float point_light(const LightTexture& texture, float intensity, const Vec3<float>& offset) noexcept {
   const float d2 = glm::dot(offset, offset);
   return intensity * texture.lookup(offset / std::sqrt(d2)) / d2;
 }
 
 double two_plane_intensity(const LightDiagram& d, const Vec3<double>& w) noexcept {
-  const double x = glm::dot(w, d.frame.c0), y = glm::dot(w, d.frame.c90),
-               z = glm::dot(w, d.frame.nadir);
+  const double x = glm::dot(w, d.frame.c0), y = glm::dot(w, d.frame.c90), z = glm::dot(w, d.frame.nadir);
   const double i0 = d.intensity({x < 0 ? pi<double> : 0, std::atan2(std::abs(x), z)});
-  const double i1 =
-      d.intensity({y < 0 ? 1.5 * pi<double> : pi<double> / 2, std::atan2(std::abs(y), z)});
+  const double i1 = d.intensity({y < 0 ? 1.5 * pi<double> : pi<double> / 2, std::atan2(std::abs(y), z)});
   const double r2 = x * x + y * y;
   if (r2 == 0) return i0;
   return std::sqrt((i0 * i0 * x * x + i1 * i1 * y * y) / r2);

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <gonio/mapping/light/diagram/light_diagram.h>
-
 #include <array>
 #include <cstddef>
 #include <vector>
+
+#include <gonio/mapping/light/diagram/light_diagram.h>
 
 namespace gonio {
 

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <gonio/mapping/charts/concentric.h>
-#include <gonio/mapping/charts/hemisphere.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include <gonio/mapping/charts/concentric.h>
+#include <gonio/mapping/charts/hemisphere.h>
 
 namespace gonio {
 

@@ -1,12 +1,13 @@
-#include <gonio/mapping/base/error.h>
-#include <gonio/mapping/light/texture/solid.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <glm/geometric.hpp>
 #include <iomanip>
 #include <memory>
+
+#include <glm/geometric.hpp>
+
+#include <gonio/mapping/base/error.h>
+#include <gonio/mapping/light/texture/solid.h>
 
 namespace gonio {
 namespace {
@@ -17,9 +18,7 @@ int vertex_count(int rows, int columns) { return 2 + (rows - 1) * columns; }
 
 /// Vertex of row r (0: nadir, rows: zenith) and column c.
 int vertex(int r, int c, int rows, int columns) {
-  return r == 0      ? 0
-         : r == rows ? vertex_count(rows, columns) - 1
-                     : 1 + (r - 1) * columns + c % columns;
+  return r == 0 ? 0 : r == rows ? vertex_count(rows, columns) - 1 : 1 + (r - 1) * columns + c % columns;
 }
 
 LightAngles angles_of(int r, int c, int rows, int columns) {
@@ -43,20 +42,17 @@ double distance(const V& p, const V& a, const V& b, const V& c) {
   const double vb = d5 * d2 - d1 * d6;
   if (vb <= 0 && d2 >= 0 && d6 <= 0) return glm::length(ap - d2 / (d2 - d6) * ac);
   const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
-    return glm::length(bp - (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b));
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return glm::length(bp - (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b));
   const double sum = va + vb + vc;
   if (!(sum > 0)) return std::min({glm::length(ap), glm::length(bp), glm::length(cp)});
   return glm::length(ap - vb / sum * ab - vc / sum * ac);
 }
 
 /// The largest distance of a vertex of `from` to the surface `to`, both on the same directions.
-double one_sided(const std::vector<double>& from, const std::vector<double>& to, int rows,
-                 int columns) {
+double one_sided(const std::vector<double>& from, const std::vector<double>& to, int rows, int columns) {
   const auto point = [&](const std::vector<double>& radius, int r, int c) {
     const LightAngles a = angles_of(r, c, rows, columns);
-    return radius[static_cast<std::size_t>(vertex(r, c, rows, columns))] *
-           LightFrame{}.direction(a.c, a.gamma);
+    return radius[static_cast<std::size_t>(vertex(r, c, rows, columns))] * LightFrame{}.direction(a.c, a.gamma);
   };
   std::vector<V> surface;
   for (int r = 0; r <= rows; ++r)
@@ -71,11 +67,9 @@ double one_sided(const std::vector<double>& from, const std::vector<double>& to,
       // The point of the other surface in the same direction is this near: nothing farther matters.
       double nearest = glm::length(p - at(r, c));
       if (nearest <= largest) continue;
-      const double reach =
-          glm::length(p) > nearest ? std::asin(nearest / glm::length(p)) : pi<double>;
+      const double reach = glm::length(p) > nearest ? std::asin(nearest / glm::length(p)) : pi<double>;
       const int row_reach = static_cast<int>(std::ceil(reach / pi<double> * rows)) + 1;
-      for (int i = std::max(r - row_reach, 0);
-           i < std::min(r + row_reach, rows) && nearest > largest; ++i)
+      for (int i = std::max(r - row_reach, 0); i < std::min(r + row_reach, rows) && nearest > largest; ++i)
         for (int k = 0; k < columns; ++k) {
           const V a = at(i, k), b = at(i + 1, k), d = at(i + 1, k + 1), e = at(i, k + 1);
           nearest = std::min({nearest, distance(p, a, b, d), distance(p, a, d, e)});
@@ -95,27 +89,21 @@ void put(std::ostream& stream, T value) {
 }  // namespace
 
 Reconstruction bilinear_reconstruction(LightDiagram diagram) {
-  return [d = std::make_shared<LightDiagram>(std::move(diagram))](const V& w) {
-    return d->intensity(w);
-  };
+  return [d = std::make_shared<LightDiagram>(std::move(diagram))](const V& w) { return d->intensity(w); };
 }
 
 Reconstruction texture_reconstruction(LightTexture texture) {
-  return [t = std::make_shared<LightTexture>(std::move(texture))](const V& w) {
-    return t->intensity(w);
-  };
+  return [t = std::make_shared<LightTexture>(std::move(texture))](const V& w) { return t->intensity(w); };
 }
 
 Reconstruction two_plane_reconstruction(LightDiagram diagram) {
-  return [d = std::make_shared<LightDiagram>(std::move(diagram))](const V& w) {
-    return two_plane_intensity(*d, w);
-  };
+  return [d = std::make_shared<LightDiagram>(std::move(diagram))](const V& w) { return two_plane_intensity(*d, w); };
 }
 
 Mesh photometric_solid(const Reconstruction& intensity, int rows, int columns, double scale) {
   if (rows < 2 || columns < 3)
-    throw Error("photometric solid: found " + std::to_string(rows) + " rows and " +
-                std::to_string(columns) + " columns, expected at least 2 and 3");
+    throw Error("photometric solid: found " + std::to_string(rows) + " rows and " + std::to_string(columns) +
+                " columns, expected at least 2 and 3");
   Mesh mesh;
   const auto add = [&](int r, int c) {
     const LightAngles a = angles_of(r, c, rows, columns);
@@ -141,21 +129,17 @@ void write_obj(std::ostream& stream, const Mesh& mesh, const std::string& name) 
   std::string line = name;
   std::replace_if(
       line.begin(), line.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-  stream << "# photometric solid: distance from the origin is the luminous intensity\no " << line
-         << "\n"
+  stream << "# photometric solid: distance from the origin is the luminous intensity\no " << line << "\n"
          << std::setprecision(9);
-  for (const Vec3<float>& v : mesh.vertices)
-    stream << "v " << v.x << ' ' << v.y << ' ' << v.z << "\n";
-  for (const auto& t : mesh.triangles)
-    stream << "f " << t[0] + 1 << ' ' << t[1] + 1 << ' ' << t[2] + 1 << "\n";
+  for (const Vec3<float>& v : mesh.vertices) stream << "v " << v.x << ' ' << v.y << ' ' << v.z << "\n";
+  for (const auto& t : mesh.triangles) stream << "f " << t[0] + 1 << ' ' << t[1] + 1 << ' ' << t[2] + 1 << "\n";
 }
 
 void write_ply(std::ostream& stream, const Mesh& mesh) {
   stream << "ply\nformat binary_little_endian 1.0\ncomment photometric solid: distance from the "
             "origin is the "
             "luminous intensity\nelement vertex "
-         << mesh.vertices.size()
-         << "\nproperty float x\nproperty float y\nproperty float z\nelement face "
+         << mesh.vertices.size() << "\nproperty float x\nproperty float y\nproperty float z\nelement face "
          << mesh.triangles.size() << "\nproperty list uchar int vertex_indices\nend_header\n";
   for (const Vec3<float>& v : mesh.vertices)
     for (int k = 0; k < 3; ++k) put(stream, v[k]);
@@ -166,8 +150,7 @@ void write_ply(std::ostream& stream, const Mesh& mesh) {
 }
 
 LightDifference compare(const Reconstruction& reference, const Reconstruction& other, int rows) {
-  if (rows < 2)
-    throw Error("compare: found " + std::to_string(rows) + " rows, expected at least 2");
+  if (rows < 2) throw Error("compare: found " + std::to_string(rows) + " rows, expected at least 2");
   const int columns = 2 * rows;
   std::vector<double> a, b;
   double largest = 0;
@@ -225,8 +208,7 @@ Prediction predict_left_out(const LightDiagram& d, const Reconstruction& reconst
     for (std::size_t j = 0; j < d.gamma.size(); ++j) {
       if (j % 2 == 0 && (i % 2 == 0 || !halved_c)) continue;
       if (d.gamma[j] == 0 || d.gamma[j] > 3.1415) continue;  // the poles are known
-      const double error =
-          (reconstruction(d.frame.direction(d.c[i], d.gamma[j])) - d.at(i, j)) / largest;
+      const double error = (reconstruction(d.frame.direction(d.c[i], d.gamma[j])) - d.at(i, j)) / largest;
       p.rms += error * error, p.largest = std::max(p.largest, std::abs(error)), ++p.angles;
     }
   if (p.angles > 0) p.rms = std::sqrt(p.rms / static_cast<double>(p.angles));

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <gonio/mapping/light/texture/light_texture.h>
-
 #include <array>
 #include <functional>
 #include <ostream>
 #include <string>
 #include <vector>
+
+#include <gonio/mapping/light/texture/light_texture.h>
 
 namespace gonio {
 
@@ -36,18 +36,16 @@ void write_ply(std::ostream& stream, const Mesh& mesh);
 /// How far two reconstructions are from each other, everything relative to the largest intensity of
 /// `reference`.
 struct LightDifference {
-  double rms;      ///< over the sphere
-  double largest;  ///< of |difference| in a direction
-  double
-      hausdorff;  ///< distance of the two solids: largest distance of a point of one to the other
-  double flux;    ///< flux of the other over that of the reference, minus 1
+  double rms;        ///< over the sphere
+  double largest;    ///< of |difference| in a direction
+  double hausdorff;  ///< distance of the two solids: largest distance of a point of one to the other
+  double flux;       ///< flux of the other over that of the reference, minus 1
 };
 
 /// Compared on 2 x 2 degrees, or finer: rows steps of gamma, 2 rows of C. The Hausdorff distance is
 /// that of the two triangle meshes, measured from the vertices of each to the triangles of the
 /// other.
-LightDifference compare(const Reconstruction& reference, const Reconstruction& other,
-                        int rows = 180);
+LightDifference compare(const Reconstruction& reference, const Reconstruction& other, int rows = 180);
 
 /// Every second parallel and, where there are enough, every second meridian of an even diagram:
 /// what is left when half of the measured angles are left out. The poles and the horizon of a

@@ -1,12 +1,6 @@
 // The GLSL include, compiled by glslang to SPIR-V and run by Mesa's software OpenGL (llvmpipe)
 // through EGL without a window system, against the C++ lookup.
 #define GL_GLEXT_PROTOTYPES
-#include <EGL/egl.h>
-#include <EGL/eglext.h>
-#include <GL/glcorearb.h>
-#include <gonio/mapping/light/texture/light_texture.h>
-#include <gtest/gtest.h>
-
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -15,6 +9,13 @@
 #include <map>
 #include <memory>
 #include <tuple>
+
+#include <EGL/egl.h>
+#include <EGL/eglext.h>
+#include <GL/glcorearb.h>
+#include <gtest/gtest.h>
+
+#include <gonio/mapping/light/texture/light_texture.h>
 
 #include "tests/support/light_cases.h"
 
@@ -40,27 +41,22 @@ class Context {
       return;
     }
     eglBindAPI(EGL_OPENGL_API);
-    const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
-                                 4,
-                                 EGL_CONTEXT_MINOR_VERSION,
-                                 5,
-                                 EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                 EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                 EGL_NONE};
+    const EGLint attributes[] = {
+        EGL_CONTEXT_MAJOR_VERSION,           4,       EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
     context_ = eglCreateContext(display_, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
-    if (context_ == EGL_NO_CONTEXT ||
-        !eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_)) {
+    if (context_ == EGL_NO_CONTEXT || !eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_)) {
       error = "no OpenGL 4.5 (libgl1-mesa-dri)";
       return;
     }
-    specialize =
-        reinterpret_cast<PFNGLSPECIALIZESHADERARBPROC>(eglGetProcAddress("glSpecializeShaderARB"));
+    specialize = reinterpret_cast<PFNGLSPECIALIZESHADERARBPROC>(eglGetProcAddress("glSpecializeShaderARB"));
     GLint count = 0;
     glGetIntegerv(GL_NUM_EXTENSIONS, &count);
     bool spirv = false;
     for (GLint k = 0; k < count; ++k)
-      spirv = spirv || std::string(reinterpret_cast<const char*>(glGetStringi(
-                           GL_EXTENSIONS, static_cast<GLuint>(k)))) == "GL_ARB_gl_spirv";
+      spirv =
+          spirv || std::string(reinterpret_cast<const char*>(glGetStringi(GL_EXTENSIONS, static_cast<GLuint>(k)))) ==
+                       "GL_ARB_gl_spirv";
     if (!spirv || specialize == nullptr) error = "the driver cannot load SPIR-V (GL_ARB_gl_spirv)";
   }
   ~Context() {
@@ -98,15 +94,12 @@ class Glsl : public ::testing::Test {
 
   static GLuint make_program(int mode, LightFilter filter, int lights) {
     std::ifstream stream(GONIO_LDT_SPIRV, std::ios::binary);
-    const std::vector<char> code((std::istreambuf_iterator<char>(stream)),
-                                 std::istreambuf_iterator<char>());
+    const std::vector<char> code((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
     EXPECT_FALSE(code.empty()) << GONIO_LDT_SPIRV;
     const GLuint shader = glCreateShader(GL_COMPUTE_SHADER);
-    glShaderBinary(1, &shader, GL_SHADER_BINARY_FORMAT_SPIR_V_ARB, code.data(),
-                   static_cast<GLsizei>(code.size()));
+    glShaderBinary(1, &shader, GL_SHADER_BINARY_FORMAT_SPIR_V_ARB, code.data(), static_cast<GLsizei>(code.size()));
     const GLuint index[] = {0, 1, 2};
-    const GLuint value[] = {static_cast<GLuint>(mode), static_cast<GLuint>(filter),
-                            static_cast<GLuint>(lights)};
+    const GLuint value[] = {static_cast<GLuint>(mode), static_cast<GLuint>(filter), static_cast<GLuint>(lights)};
     context_->specialize(shader, "main", 3, index, value);
     const GLuint program = glCreateProgram();
     glAttachShader(program, shader);
@@ -125,8 +118,7 @@ class Glsl : public ::testing::Test {
     double nanoseconds;  ///< per direction, the best of five
   };
 
-  static Run run(const LightTexture& texture, int mode, int lights,
-                 const std::vector<Vec3<float>>& directions) {
+  static Run run(const LightTexture& texture, int mode, int lights, const std::vector<Vec3<float>>& directions) {
     struct {
       float nadir[4], c0[4], c90[4];
       GLint size[4];
@@ -171,12 +163,10 @@ class Glsl : public ::testing::Test {
       glMemoryBarrier(GL_ALL_BARRIER_BITS);
       glFinish();
       const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-      run.nanoseconds =
-          std::min(run.nanoseconds, seconds.count() * 1e9 / double(directions.size()));
+      run.nanoseconds = std::min(run.nanoseconds, seconds.count() * 1e9 / double(directions.size()));
     }
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffers[1]);
-    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizeiptr>(directions.size() * 4),
-                       run.result.data());
+    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizeiptr>(directions.size() * 4), run.result.data());
     EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
     glDeleteTextures(1, &image);
     glDeleteBuffers(3, buffers);
@@ -197,13 +187,11 @@ class Glsl : public ::testing::Test {
     return all;
   }
 
-  static double largest_difference(const LightTexture& texture,
-                                   const std::vector<Vec3<float>>& directions) {
+  static double largest_difference(const LightTexture& texture, const std::vector<Vec3<float>>& directions) {
     const Run gpu = run(texture, lookup, 1, directions);
     double largest = 0;
     for (std::size_t k = 0; k < directions.size(); ++k)
-      largest = std::max(largest,
-                         std::abs(double(gpu.result[k]) - double(texture.lookup(directions[k]))));
+      largest = std::max(largest, std::abs(double(gpu.result[k]) - double(texture.lookup(directions[k]))));
     return largest;
   }
 
@@ -212,25 +200,21 @@ class Glsl : public ::testing::Test {
 
 std::unique_ptr<Context> Glsl::context_;
 
-constexpr const char* filter_names[] = {"bilinear", "Catmull-Rom", "Mitchell-Netravali",
-                                        "B-spline"};
+constexpr const char* filter_names[] = {"bilinear", "Catmull-Rom", "Mitchell-Netravali", "B-spline"};
 
 LightDiagram symmetric(LightSymmetry symmetry) {
   switch (symmetry) {
     case LightSymmetry::rotational:
       return testing::narrow_spot().diagram;
     case LightSymmetry::quadrant:
-      return testing::tabulate(24, 36, pi<double>, [](double c, double g) {
-        return (2 + std::cos(2 * c) * std::sin(g)) * std::exp(-g);
-      });
+      return testing::tabulate(24, 36, pi<double>,
+                               [](double c, double g) { return (2 + std::cos(2 * c) * std::sin(g)) * std::exp(-g); });
     case LightSymmetry::c0_c180:
-      return testing::tabulate(24, 36, pi<double>, [](double c, double g) {
-        return (2 + std::cos(c) * std::sin(g)) * std::exp(-g);
-      });
+      return testing::tabulate(24, 36, pi<double>,
+                               [](double c, double g) { return (2 + std::cos(c) * std::sin(g)) * std::exp(-g); });
     case LightSymmetry::c90_c270:
-      return testing::tabulate(24, 36, pi<double>, [](double c, double g) {
-        return (2 + std::sin(c) * std::sin(g)) * std::exp(-g);
-      });
+      return testing::tabulate(24, 36, pi<double>,
+                               [](double c, double g) { return (2 + std::sin(c) * std::sin(g)) * std::exp(-g); });
     case LightSymmetry::none:
       break;
   }
@@ -240,16 +224,14 @@ LightDiagram symmetric(LightSymmetry symmetry) {
 TEST_F(Glsl, EverySymmetryAndFilterAgreesWithTheLibrary) {
   std::printf("renderer: %s\n", context_->renderer().c_str());
   const auto directions = spread(100000);
-  for (LightSymmetry symmetry :
-       {LightSymmetry::none, LightSymmetry::rotational, LightSymmetry::c0_c180,
-        LightSymmetry::c90_c270, LightSymmetry::quadrant}) {
+  for (LightSymmetry symmetry : {LightSymmetry::none, LightSymmetry::rotational, LightSymmetry::c0_c180,
+                                 LightSymmetry::c90_c270, LightSymmetry::quadrant}) {
     const LightDiagram diagram = symmetric(symmetry);
     EXPECT_EQ(find_symmetry(diagram), symmetry);
     for (int filter = 0; filter < 4; ++filter) {
-      const double difference =
-          largest_difference(LightTexture(diagram, static_cast<LightFilter>(filter)), directions);
-      std::printf("%-24s %-20s largest difference %.1e of I_max\n", to_string(symmetry),
-                  filter_names[filter], difference);
+      const double difference = largest_difference(LightTexture(diagram, static_cast<LightFilter>(filter)), directions);
+      std::printf("%-24s %-20s largest difference %.1e of I_max\n", to_string(symmetry), filter_names[filter],
+                  difference);
       EXPECT_LT(difference, 1e-5);
     }
   }
@@ -261,12 +243,9 @@ TEST_F(Glsl, HemispheresAndTurnedLuminairesAgree) {
   turned.frame.nadir = glm::normalize(Vec3<double>{1, 2, -1});
   turned.frame.c0 = glm::normalize(glm::cross(turned.frame.nadir, {0, 1, 0}));
   turned.frame.c90 = glm::cross(turned.frame.c0, turned.frame.nadir);
-  for (const LightDiagram& diagram :
-       {testing::lambertian().diagram, testing::uplight().diagram, turned})
+  for (const LightDiagram& diagram : {testing::lambertian().diagram, testing::uplight().diagram, turned})
     for (int filter = 0; filter < 4; ++filter)
-      EXPECT_LT(
-          largest_difference(LightTexture(diagram, static_cast<LightFilter>(filter)), directions),
-          1e-5);
+      EXPECT_LT(largest_difference(LightTexture(diagram, static_cast<LightFilter>(filter)), directions), 1e-5);
 }
 
 // One texture, two filters: differences are seen.
@@ -277,19 +256,15 @@ TEST_F(Glsl, TheComparisonCanFail) {
   const LightTexture other(diagram, LightFilter::bilinear);
   double largest = 0;
   for (std::size_t k = 0; k < directions.size(); ++k)
-    largest =
-        std::max(largest, std::abs(double(gpu.result[k]) - double(other.lookup(directions[k]))));
+    largest = std::max(largest, std::abs(double(gpu.result[k]) - double(other.lookup(directions[k]))));
   EXPECT_GT(largest, 1e-3);
 }
 
 TEST_F(Glsl, AsymmetricLuminairePointsTheSameWay) {
   const auto directions = spread(100000);
-  const Run gpu =
-      run(LightTexture(testing::asymmetric().diagram, LightFilter::bspline), lookup, 1, directions);
+  const Run gpu = run(LightTexture(testing::asymmetric().diagram, LightFilter::bspline), lookup, 1, directions);
   const auto best = std::max_element(gpu.result.begin(), gpu.result.end()) - gpu.result.begin();
-  EXPECT_LT(glm::length(Vec3<double>(directions[static_cast<std::size_t>(best)]) -
-                        testing::asymmetric_peak()),
-            rad(1));
+  EXPECT_LT(glm::length(Vec3<double>(directions[static_cast<std::size_t>(best)]) - testing::asymmetric_peak()), rad(1));
 }
 
 TEST_F(Glsl, Lambertian1000Lumens) {
@@ -298,8 +273,7 @@ TEST_F(Glsl, Lambertian1000Lumens) {
     const LightTexture texture(testing::lambertian().diagram, static_cast<LightFilter>(filter));
     const Run gpu = run(texture, lookup, 1, directions);
     double sum = 0;
-    for (std::size_t k = 0; k < 200000; ++k)
-      sum += double(gpu.result[k]) * texture.max_cd() * 4 * pi<double> / 200000;
+    for (std::size_t k = 0; k < 200000; ++k) sum += double(gpu.result[k]) * texture.max_cd() * 4 * pi<double> / 200000;
     EXPECT_NEAR(sum, 1000, 0.1);
     const Run straight = run(texture, lookup, 1, {{0, 0, -1}});
     EXPECT_NEAR(double(straight.result[0]) * texture.max_cd(), 1000 / pi<double>, 0.02);
@@ -314,8 +288,7 @@ TEST_F(Glsl, PhotometricFiles) {
   for (const auto& path : files) {
     const LightDiagram diagram = load_light(path).diagram;
     for (int filter = 0; filter < 4; ++filter) {
-      const double difference =
-          largest_difference(LightTexture(diagram, static_cast<LightFilter>(filter)), directions);
+      const double difference = largest_difference(LightTexture(diagram, static_cast<LightFilter>(filter)), directions);
       worst[filter] = std::max(worst[filter], difference);
       // A step of the intensity that is narrower than a float can place a direction (type B, where
       // the measured sector ends) may fall on either side.
@@ -325,8 +298,7 @@ TEST_F(Glsl, PhotometricFiles) {
     }
   }
   for (int filter = 0; filter < 4; ++filter)
-    std::printf("%-20s largest difference of all files %.1e of I_max\n", filter_names[filter],
-                worst[filter]);
+    std::printf("%-20s largest difference of all files %.1e of I_max\n", filter_names[filter], worst[filter]);
 }
 
 // Table 1 of Wallner (2008) as cost of the lighting alone: shading a point by 1, 4 and 7 lights.
@@ -341,11 +313,10 @@ TEST_F(Glsl, CostOverPlainPointLights) {
     std::printf("%4d  %7.2f ", lights, plain);
     for (LightSymmetry symmetry : {LightSymmetry::rotational, LightSymmetry::none})
       for (LightFilter filter : {LightFilter::bilinear, LightFilter::bspline}) {
-        const Run lit =
-            run(LightTexture(symmetric(symmetry), filter), ldt_lights, lights, directions);
+        const Run lit = run(LightTexture(symmetric(symmetry), filter), ldt_lights, lights, directions);
         std::printf("  %8.2f (%.1fx)", lit.nanoseconds, lit.nanoseconds / plain);
-        EXPECT_TRUE(std::all_of(lit.result.begin(), lit.result.end(),
-                                [](float v) { return std::isfinite(v) && v >= 0; }));
+        EXPECT_TRUE(
+            std::all_of(lit.result.begin(), lit.result.end(), [](float v) { return std::isfinite(v) && v >= 0; }));
       }
     std::printf("\n");
   }

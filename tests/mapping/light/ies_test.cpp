@@ -1,9 +1,10 @@
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
 #include <gonio/mapping/base/error.h>
 #include <gonio/mapping/light/files/ies.h>
 #include <gonio/mapping/light/files/text_scanner.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
 
 #include "tests/support/light_cases.h"
 
@@ -12,13 +13,11 @@ namespace {
 
 using testing::rad;
 
-std::string plain(const std::string& horizontal, const std::string& values,
-                  const std::string& counts, const std::string& vertical = "0 45 90",
-                  const std::string& type = "1", const std::string& factors = "1 1 10",
-                  const std::string& multiplier = "1") {
-  return "IESNA:LM-63-2002\n[TEST] t\n[TESTLAB] l\n[ISSUEDATE] d\n[MANUFAC] m\nTILT=NONE\n1 -1 " +
-         multiplier + " " + counts + " " + type + " 2 0 0 0\n" + factors + "\n" + vertical + "\n" +
-         horizontal + "\n" + values + "\n";
+std::string plain(const std::string& horizontal, const std::string& values, const std::string& counts,
+                  const std::string& vertical = "0 45 90", const std::string& type = "1",
+                  const std::string& factors = "1 1 10", const std::string& multiplier = "1") {
+  return "IESNA:LM-63-2002\n[TEST] t\n[TESTLAB] l\n[ISSUEDATE] d\n[MANUFAC] m\nTILT=NONE\n1 -1 " + multiplier + " " +
+         counts + " " + type + " 2 0 0 0\n" + factors + "\n" + vertical + "\n" + horizontal + "\n" + values + "\n";
 }
 
 /// Intensity in the plane that the file calls `h`, at its vertical angle `v` (both in degrees).
@@ -65,25 +64,22 @@ TEST(Ies, SecondFactorIsOneTo1991) {
     double factor;
     int deviations;  // of the first line and the second factor
   };
-  for (const Case& c : {Case{"IESNA91", 1991, 0.5, 0}, Case{"IESNA:LM-63-1991", 1991, 0.5, 0},
-                        Case{"iesna91", 1991, 0.5, 1}, Case{"IESNA:LM-63-1986", 1986, 0.5, 0},
-                        Case{"a label", 1986, 0.5, 1}, Case{"IES 400 W lamps", 1986, 0.5, 1},
-                        Case{"IESNA:LM-63-1995", 1995, 1, 1}, Case{"IESNA95", 1995, 1, 2},
-                        Case{"IESNA:LM-63-2002", 2002, 1, 1}, Case{"iesna:lm-63-2002", 2002, 1, 2},
-                        Case{"ANSI/IESNA LM-63-02", 2002, 1, 2}, Case{"IES:LM-63-2019", 2019, 1, 0},
-                        Case{"Ies: LM-63-2019", 2019, 1, 1}, Case{"IESNA:LM-63-2040", 0, 1, 2}}) {
+  for (const Case& c :
+       {Case{"IESNA91", 1991, 0.5, 0}, Case{"IESNA:LM-63-1991", 1991, 0.5, 0}, Case{"iesna91", 1991, 0.5, 1},
+        Case{"IESNA:LM-63-1986", 1986, 0.5, 0}, Case{"a label", 1986, 0.5, 1}, Case{"IES 400 W lamps", 1986, 0.5, 1},
+        Case{"IESNA:LM-63-1995", 1995, 1, 1}, Case{"IESNA95", 1995, 1, 2}, Case{"IESNA:LM-63-2002", 2002, 1, 1},
+        Case{"iesna:lm-63-2002", 2002, 1, 2}, Case{"ANSI/IESNA LM-63-02", 2002, 1, 2},
+        Case{"IES:LM-63-2019", 2019, 1, 0}, Case{"Ies: LM-63-2019", 2019, 1, 1}, Case{"IESNA:LM-63-2040", 0, 1, 2}}) {
     SCOPED_TRACE(c.first_line);
     Problems deviations;
-    const IesFile f =
-        read_ies(std::string(c.first_line) +
-                     "\n[TEST] t\n[TESTLAB] l\n[ISSUEDATE] d\n[MANUFAC] m\nTILT=NONE\n"
-                     "1 -1 2 3 1 1 2 0 0 0\n1 0.5 10\n0 45 90\n0\n9 6 3\n",
-                 "a", deviations);
+    const IesFile f = read_ies(std::string(c.first_line) +
+                                   "\n[TEST] t\n[TESTLAB] l\n[ISSUEDATE] d\n[MANUFAC] m\nTILT=NONE\n"
+                                   "1 -1 2 3 1 1 2 0 0 0\n1 0.5 10\n0 45 90\n0\n9 6 3\n",
+                               "a", deviations);
     EXPECT_EQ(f.edition(), c.edition);
     EXPECT_DOUBLE_EQ(f.factor(), 2 * c.factor);
     int found = 0;
-    for (const Problem& d : deviations)
-      found += d.field == "first line" || d.field == "future use";
+    for (const Problem& d : deviations) found += d.field == "first line" || d.field == "future use";
     EXPECT_EQ(found, c.deviations);
   }
 }
@@ -101,8 +97,8 @@ TEST(Ies, KeywordsAndTiltAreReadInAnySpelling) {
     std::string text = good;
     return text.replace(text.find("TILT=NONE"), 9, line);
   };
-  for (const char* line : {"Tilt=None", "TILT = NONE", "  tilt =none", "TILT=None",
-                           "TILT=20 wall washer\n[OTHER] label\nTILT=NONE"}) {
+  for (const char* line :
+       {"Tilt=None", "TILT = NONE", "  tilt =none", "TILT=None", "TILT=20 wall washer\n[OTHER] label\nTILT=NONE"}) {
     SCOPED_TRACE(line);
     const std::string text = with_tilt(line);
     EXPECT_EQ(light_format(text), LightFormat::ies);
@@ -130,8 +126,7 @@ TEST(Ies, CommasAreReadAsTheCountsHaveIt) {
   const auto counts = [](const std::string& text) {
     Problems deviations;
     read_ies(text, "a", deviations);
-    return std::count_if(deviations.begin(), deviations.end(),
-                         [](const Problem& d) { return d.field == "commas"; });
+    return std::count_if(deviations.begin(), deviations.end(), [](const Problem& d) { return d.field == "commas"; });
   };
   using Values = std::vector<double>;
   // Decimal commas; those before a blank are separators all the same.
@@ -140,10 +135,8 @@ TEST(Ies, CommasAreReadAsTheCountsHaveIt) {
     EXPECT_EQ(cd(text), (Values{100.5, 90.5, 70.5})) << values;
     EXPECT_EQ(counts(text), 1) << values;
   }
-  EXPECT_NEAR(
-      flux(testing::from_ies(plain("0", "100,5 90,5 70,5 40,5 0,0", "5 1", "0 22.5 45 67.5 90"))
-               .diagram),
-      testing::rotational_flux({0, 22.5, 45, 67.5, 90}, {100.5, 90.5, 70.5, 40.5, 0}), 1e-9);
+  EXPECT_NEAR(flux(testing::from_ies(plain("0", "100,5 90,5 70,5 40,5 0,0", "5 1", "0 22.5 45 67.5 90")).diagram),
+              testing::rotational_flux({0, 22.5, 45, 67.5, 90}, {100.5, 90.5, 70.5, 40.5, 0}), 1e-9);
   // Thousands.
   EXPECT_EQ(cd(plain("0", "1,234 1,100 950", "3 1")), (Values{1234, 1100, 950}));
   EXPECT_EQ(cd(plain("0", "1,234,567.5 12,100.25 950", "3 1")), (Values{1234567.5, 12100.25, 950}));
@@ -179,8 +172,7 @@ TEST(Ies, NumbersMissingOrLeftOverAreErrors) {
   };
   EXPECT_EQ(message("9 1 0 9 2 0"), "accepted");
   EXPECT_EQ(message("9 1 0 9 2 0\nremarks, 1 2 3"), "accepted");
-  EXPECT_NE(message("9 1 0 9 2").find("after 5 numbers, expected 6"), std::string::npos)
-      << message("9 1 0 9 2");
+  EXPECT_NE(message("9 1 0 9 2").find("after 5 numbers, expected 6"), std::string::npos) << message("9 1 0 9 2");
   EXPECT_NE(message("9 1 0 9 2 0 7 8")
                 .find("more numbers after the 6 of 2 horizontal and 3 vertical "
                       "angles: \"7 8\""),
@@ -194,8 +186,7 @@ TEST(Ies, SymmetryIsThatOfTheFrame) {
     for (double zero : {90.0, 0.0, 180.0, -90.0}) {
       LightOptions options;
       options.ies_zero = rad(zero);
-      const Luminaire light =
-          testing::from_ies(plain(range, "9 1 0  9 2 0  9 3 0", "3 3"), options);
+      const Luminaire light = testing::from_ies(plain(range, "9 1 0  9 2 0  9 3 0", "3 3"), options);
       EXPECT_NE(light.symmetry, LightSymmetry::none);
       EXPECT_EQ(light.symmetry, find_symmetry(light.diagram)) << range << " at " << zero;
     }
@@ -334,19 +325,14 @@ TEST(Ies, BrokenFilesAreRejectedWithLineAndField) {
     }
     return std::string("accepted");
   };
-  EXPECT_NE(message("IESNA91\nTILT=NONE\nfile format error\n1 0").find("line 3: number of lamps"),
-            std::string::npos);
+  EXPECT_NE(message("IESNA91\nTILT=NONE\nfile format error\n1 0").find("line 3: number of lamps"), std::string::npos);
   EXPECT_NE(message("IESNA91\n[TEST]\n").find("TILT"), std::string::npos);
-  EXPECT_NE(message(plain("0", "9 1", "3 1")).find("candela values: found the end"),
-            std::string::npos);
+  EXPECT_NE(message(plain("0", "9 1", "3 1")).find("candela values: found the end"), std::string::npos);
   EXPECT_NE(message(plain("0", "9 nan 0", "3 1")).find("candela values"), std::string::npos);
-  EXPECT_NE(message(plain("0", "9 1 0", "3 0")).find("number of horizontal angles"),
-            std::string::npos);
-  EXPECT_NE(message(plain("0", "9 1 0", "3 1", "0 45 90", "4")).find("photometric type"),
-            std::string::npos);
+  EXPECT_NE(message(plain("0", "9 1 0", "3 0")).find("number of horizontal angles"), std::string::npos);
+  EXPECT_NE(message(plain("0", "9 1 0", "3 1", "0 45 90", "4")).find("photometric type"), std::string::npos);
   EXPECT_NE(message(plain("0", "9 1 0", "3 1", "0 90 45")).find("ascending"), std::string::npos);
-  EXPECT_NE(message(plain("0", "9 1 0", "3 1", "0 45 90", "1", "0 1 10")).find("ballast factor"),
-            std::string::npos);
+  EXPECT_NE(message(plain("0", "9 1 0", "3 1", "0 45 90", "1", "0 1 10")).find("ballast factor"), std::string::npos);
   EXPECT_EQ(message(plain("0", "9 1 0", "3 1")), "accepted");
 }
 
@@ -367,8 +353,8 @@ TEST(Ies, ShortTablesAreDarkBeyond) {
 
 TEST(Ies, NegativeValuesAndUnequalPolesAreTold) {
   Problems deviations;
-  const Luminaire light = to_luminaire(
-      read_ies(plain("0 90", "9 -1 0  7 2 0", "3 2"), "a", deviations), "a", {}, deviations);
+  const Luminaire light =
+      to_luminaire(read_ies(plain("0 90", "9 -1 0  7 2 0", "3 2"), "a", deviations), "a", {}, deviations);
   ASSERT_EQ(deviations.size(), 2u);
   EXPECT_NEAR(at(light, 0, 0), 8, 1e-12);
   EXPECT_EQ(at(light, 0, 45), 0);
@@ -391,19 +377,14 @@ TEST(Ies, DeviationsHaveTheUnitOfTheFile) {
 // Type B: polar axis horizontal. V turns the plane from the nadir towards the 0-degree plane, H is
 // the angle in that plane, towards 90 degrees if counter-clockwise.
 TEST(Ies, TypeB) {
-  const std::string text =
-      plain("-90 -45 0 45 90", "0 0 0  0 1 2  0 3 4  0 5 6  0 0 0", "3 5", "-90 0 45", "2");
+  const std::string text = plain("-90 -45 0 45 90", "0 0 0  0 1 2  0 3 4  0 5 6  0 0 0", "3 5", "-90 0 45", "2");
   const Luminaire light = testing::from_ies(text);
   const LightFrame frame;
-  const Vec3<double> along = frame.direction(rad(90), rad(90)),
-                     aside = frame.direction(rad(180), rad(90));
+  const Vec3<double> along = frame.direction(rad(90), rad(90)), aside = frame.direction(rad(180), rad(90));
   const auto direction = [&](double h, double v) {
-    return std::cos(rad(h)) * (std::cos(rad(v)) * frame.nadir + std::sin(rad(v)) * along) +
-           std::sin(rad(h)) * aside;
+    return std::cos(rad(h)) * (std::cos(rad(v)) * frame.nadir + std::sin(rad(v)) * along) + std::sin(rad(h)) * aside;
   };
-  const auto value = [&](const Luminaire& l, double h, double v) {
-    return l.diagram.intensity(direction(h, v));
-  };
+  const auto value = [&](const Luminaire& l, double h, double v) { return l.diagram.intensity(direction(h, v)); };
   EXPECT_NEAR(value(light, 0, 0), 3, 1e-9);
   EXPECT_NEAR(value(light, -45, 0), 1, 1e-9);
   EXPECT_NEAR(value(light, 45, 0), 5, 1e-9);
@@ -421,10 +402,9 @@ TEST(Ies, TypeB) {
 
 // A type B file that is lit up to the horizon and dark above it: 1 cd over a hemisphere.
 TEST(Ies, TypeBKeepsItsEdgeAtTheHorizon) {
-  const Luminaire light =
-      testing::from_ies(plain("-90 0 90", "1 1 1  1 1 1  1 1 1", "3 3", "-90 0 90", "2"));
-  for (const Luminaire& l : {light, testing::from_ies(testing::ies_text(light)),
-                             testing::from_eulumdat(testing::eulumdat_text(light))}) {
+  const Luminaire light = testing::from_ies(plain("-90 0 90", "1 1 1  1 1 1  1 1 1", "3 3", "-90 0 90", "2"));
+  for (const Luminaire& l :
+       {light, testing::from_ies(testing::ies_text(light)), testing::from_eulumdat(testing::eulumdat_text(light))}) {
     EXPECT_NEAR(flux(l.diagram) / (2 * pi<double>), 1, 1e-4);
     EXPECT_NEAR(l.diagram.intensity(LightFrame{}.direction(rad(33), rad(89.9))), 1, 1e-6);
     EXPECT_NEAR(l.diagram.intensity(LightFrame{}.direction(rad(33), rad(90.1))), 0, 1e-6);

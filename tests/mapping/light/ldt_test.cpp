@@ -1,9 +1,10 @@
+#include <cstdio>
+
+#include <gtest/gtest.h>
+
 #include <gonio/mapping/base/error.h>
 #include <gonio/mapping/light/texture/light_texture.h>
 #include <gonio/mapping/light/texture/solid.h>
-#include <gtest/gtest.h>
-
-#include <cstdio>
 
 #include "tests/support/light_cases.h"
 
@@ -12,10 +13,9 @@ namespace {
 
 using testing::rad;
 
-constexpr LightFilter filters[] = {LightFilter::bilinear, LightFilter::catmull_rom,
-                                   LightFilter::mitchell, LightFilter::bspline};
-constexpr LightFilter interpolating[] = {LightFilter::bilinear, LightFilter::catmull_rom,
-                                         LightFilter::bspline};
+constexpr LightFilter filters[] = {LightFilter::bilinear, LightFilter::catmull_rom, LightFilter::mitchell,
+                                   LightFilter::bspline};
+constexpr LightFilter interpolating[] = {LightFilter::bilinear, LightFilter::catmull_rom, LightFilter::bspline};
 
 TEST(LightFilter, WeightsSumToOneAndAreMirrored) {
   for (LightFilter filter : filters)
@@ -54,17 +54,13 @@ TEST(LightTexture, InterpolatingFiltersHitTheNodes) {
       double worst = 0;
       for (std::size_t i = 0; i + 1 < d.c.size(); ++i)
         for (std::size_t j = 0; j < d.gamma.size(); ++j)
-          worst = std::max(
-              worst,
-              std::abs(texture.intensity(d.frame.direction(d.c[i], d.gamma[j])) - d.at(i, j)));
-      EXPECT_LT(worst / max_intensity(d), 2e-5)
-          << light.name << " filter " << static_cast<int>(filter);
+          worst = std::max(worst, std::abs(texture.intensity(d.frame.direction(d.c[i], d.gamma[j])) - d.at(i, j)));
+      EXPECT_LT(worst / max_intensity(d), 2e-5) << light.name << " filter " << static_cast<int>(filter);
     }
 }
 
 TEST(LightTexture, BilinearIsTheDiagram) {
-  for (const Luminaire& light :
-       {testing::lambertian(), testing::asymmetric(), testing::uplight()}) {
+  for (const Luminaire& light : {testing::lambertian(), testing::asymmetric(), testing::uplight()}) {
     const LightTexture texture(light.diagram, LightFilter::bilinear);
     double worst = 0;
     for (const Vec3<double>& w : testing::directions(50000))
@@ -100,8 +96,7 @@ TEST(LightTexture, CubicFiltersAreSmoothAcrossThePole) {
   for (LightFilter filter : {LightFilter::catmull_rom, LightFilter::bspline}) {
     const LightTexture texture(d, filter);
     const auto at = [&](double angle) {
-      return texture.intensity(
-          LightFrame{}.direction(angle < 0 ? rad(210) : rad(30), std::abs(angle)));
+      return texture.intensity(LightFrame{}.direction(angle < 0 ? rad(210) : rad(30), std::abs(angle)));
     };
     const double h = rad(0.2), before = (at(0) - at(-h)) / h, behind = (at(h) - at(0)) / h;
     EXPECT_NEAR(before / behind, 1, 0.03) << static_cast<int>(filter);
@@ -110,14 +105,12 @@ TEST(LightTexture, CubicFiltersAreSmoothAcrossThePole) {
 
 TEST(LightTexture, SmoothFiltersAreCloserToASmoothLuminaire) {
   const LightDiagram d = testing::asymmetric().diagram;
-  const Vec3<double> down = testing::asymmetric_peak(),
-                     up = LightFrame{}.direction(rad(200), rad(130));
+  const Vec3<double> down = testing::asymmetric_peak(), up = LightFrame{}.direction(rad(200), rad(130));
   double rms[4] = {};
   for (LightFilter filter : filters) {
     const LightTexture texture(d, filter);
     for (const Vec3<double>& w : testing::directions(20000)) {
-      const double truth =
-          1000 * std::exp(8 * (glm::dot(w, down) - 1)) + 250 * std::exp(12 * (glm::dot(w, up) - 1));
+      const double truth = 1000 * std::exp(8 * (glm::dot(w, down) - 1)) + 250 * std::exp(12 * (glm::dot(w, up) - 1));
       rms[static_cast<int>(filter)] += std::pow(texture.intensity(w) - truth, 2);
     }
   }
@@ -134,8 +127,7 @@ TEST(LightTexture, LambertianFluxThroughEveryFilter) {
     const int n = 20000;
     for (int j = 0; j < n; ++j) {
       const double g = rad(90) * (j + 0.5) / n;
-      sum += texture.intensity(LightFrame{}.direction(1, g)) * 2 * pi<double> * std::sin(g) *
-             rad(90) / n;
+      sum += texture.intensity(LightFrame{}.direction(1, g)) * 2 * pi<double> * std::sin(g) * rad(90) / n;
     }
     EXPECT_NEAR(sum, 1000, 0.1) << static_cast<int>(filter);
     EXPECT_EQ(texture.intensity({0, 0, 1}), 0);
@@ -190,8 +182,7 @@ TEST(Compare, EqualIsZeroAndScaledIsFound) {
   EXPECT_EQ(same.rms, 0);
   LightDiagram larger = testing::tabulate(1, 2, pi<double>, [](double, double) { return 11.0; });
   LightDiagram sphere = testing::tabulate(1, 2, pi<double>, [](double, double) { return 10.0; });
-  const LightDifference off =
-      compare(bilinear_reconstruction(sphere), bilinear_reconstruction(larger), 60);
+  const LightDifference off = compare(bilinear_reconstruction(sphere), bilinear_reconstruction(larger), 60);
   EXPECT_NEAR(off.hausdorff, 0.1, 2e-3);  // two spheres of radius 1 and 1.1
   EXPECT_NEAR(off.rms, 0.1, 1e-9);
   EXPECT_NEAR(off.flux, 0.1, 1e-9);
@@ -202,8 +193,7 @@ TEST(Compare, EqualIsZeroAndScaledIsFound) {
 TEST(Compare, HausdorffIsADistanceOfSolids) {
   const auto spike = [](double tilt) {
     const Vec3<double> axis = LightFrame{}.direction(0, rad(tilt));
-    return Reconstruction(
-        [axis](const Vec3<double>& w) { return std::exp(200 * (glm::dot(w, axis) - 1)); });
+    return Reconstruction([axis](const Vec3<double>& w) { return std::exp(200 * (glm::dot(w, axis) - 1)); });
   };
   const LightDifference turned = compare(spike(40), spike(44), 180);
   EXPECT_NEAR(turned.hausdorff, 2 * std::sin(rad(2)), 0.02);
@@ -216,8 +206,7 @@ TEST(Compare, EverySecondAngleIsLeftOut) {
   EXPECT_EQ(half.c.size(), 19u);
   EXPECT_NO_THROW(check(half));
   const Prediction linear = predict_left_out(d, bilinear_reconstruction(half));
-  const Prediction cubic =
-      predict_left_out(d, texture_reconstruction(LightTexture(half, LightFilter::catmull_rom)));
+  const Prediction cubic = predict_left_out(d, texture_reconstruction(LightTexture(half, LightFilter::catmull_rom)));
   EXPECT_EQ(linear.angles, 36u * 37u - 18u * 19u - 2u * 18u);
   EXPECT_LT(cubic.rms, 0.5 * linear.rms);
   EXPECT_EQ(predict_left_out(d, bilinear_reconstruction(d)).largest < 1e-9, true);

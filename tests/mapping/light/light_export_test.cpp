@@ -1,19 +1,20 @@
-#include <ImfFrameBuffer.h>
-#include <ImfHeader.h>
-#include <ImfInputFile.h>
-#include <gonio/mapping/base/error.h>
-#include <gonio/mapping/base/format_number.h>
-#include <gonio/mapping/light/emission.h>
-#include <gonio/mapping/light/exr/light_exr.h>
-#include <gonio/mapping/light/texture/octahedral.h>
-#include <gonio/mapping/light/photometry.h>
-#include <gonio/mapping/light/polar_svg.h>
-#include <gtest/gtest.h>
-
 #include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <map>
+
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <gtest/gtest.h>
+
+#include <gonio/mapping/base/error.h>
+#include <gonio/mapping/base/format_number.h>
+#include <gonio/mapping/light/emission.h>
+#include <gonio/mapping/light/exr/light_exr.h>
+#include <gonio/mapping/light/photometry.h>
+#include <gonio/mapping/light/polar_svg.h>
+#include <gonio/mapping/light/texture/octahedral.h>
 
 #include "tests/support/light_cases.h"
 
@@ -27,8 +28,7 @@ class TemporaryFile {
  public:
   explicit TemporaryFile(const std::string& name)
       : path_(std::filesystem::path(::testing::TempDir()) /
-              (std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) + "_" +
-               name)) {}
+              (std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) + "_" + name)) {}
   ~TemporaryFile() { std::filesystem::remove(path_); }
   const std::filesystem::path& path() const { return path_; }
 
@@ -48,9 +48,8 @@ Image read_image(const std::filesystem::path& path, const char* channel = "Y") {
   Image image{window.max.x + 1, window.max.y + 1, {}};
   image.pixels.resize(static_cast<std::size_t>(image.width * image.height));
   Imf::FrameBuffer buffer;
-  buffer.insert(channel,
-                Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(image.pixels.data()), sizeof(float),
-                           sizeof(float) * static_cast<std::size_t>(image.width)));
+  buffer.insert(channel, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(image.pixels.data()), sizeof(float),
+                                    sizeof(float) * static_cast<std::size_t>(image.width)));
   file.setFrameBuffer(buffer);
   file.readPixels(0, image.height - 1);
   return image;
@@ -65,16 +64,14 @@ double octahedral_flux(const Image& image) {
 double latlong_flux(const Image& image) {
   double sum = 0;
   for (int y = 0; y < image.height; ++y) {
-    const double z =
-        std::cos(pi<double> * y / image.height) - std::cos(pi<double> * (y + 1) / image.height);
+    const double z = std::cos(pi<double> * y / image.height) - std::cos(pi<double> * (y + 1) / image.height);
     for (int x = 0; x < image.width; ++x) sum += image.at(x, y) * z * 2 * pi<double> / image.width;
   }
   return sum;
 }
 
 Vec3<double> brightest(const Image& image, bool octahedral) {
-  const auto best =
-      std::max_element(image.pixels.begin(), image.pixels.end()) - image.pixels.begin();
+  const auto best = std::max_element(image.pixels.begin(), image.pixels.end()) - image.pixels.begin();
   const double x = (double(best % image.width) + 0.5) / image.width,
                y = (double(best / image.width) + 0.5) / image.height;
   if (octahedral) return octahedral_to_direction(SquarePoint<double>{x, y});
@@ -83,9 +80,8 @@ Vec3<double> brightest(const Image& image, bool octahedral) {
 }
 
 Vec3<double> farthest(const std::vector<Vec3<double>>& points) {
-  const auto best = std::max_element(
-      points.begin(), points.end(),
-      [](const auto& a, const auto& b) { return glm::length(a) < glm::length(b); });
+  const auto best = std::max_element(points.begin(), points.end(),
+                                     [](const auto& a, const auto& b) { return glm::length(a) < glm::length(b); });
   return glm::normalize(*best);
 }
 
@@ -93,8 +89,7 @@ std::vector<Vec3<double>> obj_vertices(const std::string& text) {
   std::istringstream stream(text);
   std::vector<Vec3<double>> points;
   for (std::string line; std::getline(stream, line);)
-    if (Vec3<double> v; std::sscanf(line.c_str(), "v %lf %lf %lf", &v.x, &v.y, &v.z) == 3)
-      points.push_back(v);
+    if (Vec3<double> v; std::sscanf(line.c_str(), "v %lf %lf %lf", &v.x, &v.y, &v.z) == 3) points.push_back(v);
   return points;
 }
 
@@ -113,8 +108,7 @@ std::vector<Vec3<double>> ply_vertices(const std::string& data) {
 
 /// Where a curve of the picture is farthest from the centre: the angle from straight down, positive
 /// to the right.
-double svg_angle(const std::string& svg, const std::string& id, const PolarScale& scale,
-                 double* intensity = nullptr) {
+double svg_angle(const std::string& svg, const std::string& id, const PolarScale& scale, double* intensity = nullptr) {
   std::size_t at = svg.find("<path id=\"" + id + "\" d=\"");
   EXPECT_NE(at, std::string::npos);
   at = svg.find("M", at);
@@ -142,8 +136,7 @@ TEST(Octahedral, MapsAreInverseAndEqualArea) {
   EXPECT_NEAR(octahedral_to_direction(SquarePoint<double>{1, 0.5}).x, 1, 1e-12);
   EXPECT_NEAR(octahedral_to_direction(SquarePoint<double>{0.5, 1}).y, 1, 1e-12);
   for (double u : {0.0, 1.0})
-    for (double v : {0.0, 1.0})
-      EXPECT_NEAR(octahedral_to_direction(SquarePoint<double>{u, v}).z, -1, 1e-12);
+    for (double v : {0.0, 1.0}) EXPECT_NEAR(octahedral_to_direction(SquarePoint<double>{u, v}).z, -1, 1e-12);
   // Area: a grid of points has the moments of the sphere.
   double z = 0, zz = 0, x3 = 0;
   const int n = 400;
@@ -176,8 +169,7 @@ TEST(LightExport, Lambertian1000LumensThroughEverything) {
   check_light(testing::from_eulumdat(testing::eulumdat_text(round)), "all formats");
 
   for (int filter = 0; filter < 4; ++filter) {
-    const auto rebuilt =
-        texture_reconstruction(LightTexture(light.diagram, static_cast<LightFilter>(filter)));
+    const auto rebuilt = texture_reconstruction(LightTexture(light.diagram, static_cast<LightFilter>(filter)));
     save_octahedral(octahedral.path(), rebuilt, 512);
     const Image square = read_image(octahedral.path());
     EXPECT_NEAR(octahedral_flux(square), 1000, 0.1) << filter;
@@ -219,8 +211,7 @@ TEST(LightExport, EverythingPointsTheSameWay) {
   };
   points_at(direction(light.diagram), 0.1, "made");
   points_at(direction(testing::from_ies(testing::ies_text(light)).diagram), 0.1, "IES");
-  points_at(direction(testing::from_eulumdat(testing::eulumdat_text(light)).diagram), 0.1,
-            "EULUMDAT");
+  points_at(direction(testing::from_eulumdat(testing::eulumdat_text(light)).diagram), 0.1, "EULUMDAT");
   const TemporaryFile own("own.exr"), octahedral("oct.exr"), latlong("ll.exr");
   save_light(own.path(), light);
   points_at(direction(load_light_exr(own.path()).diagram), 0.1, "EXR");
@@ -247,8 +238,7 @@ TEST(LightExport, EverythingPointsTheSameWay) {
   Vec3<double> mean{0, 0, 0};
   for (int j = 0; j < 100; ++j)
     for (int i = 0; i < 100; ++i)
-      mean +=
-          Vec3<double>(sampler.sample((float(i) + 0.5f) / 100, (float(j) + 0.5f) / 100).direction);
+      mean += Vec3<double>(sampler.sample((float(i) + 0.5f) / 100, (float(j) + 0.5f) / 100).direction);
   const Vec3<double> w = glm::normalize(mean);
   EXPECT_LT(std::abs(to_light_angles({}, w).c - rad(30)),
             rad(6));  // the weaker lobe pulls a little
@@ -256,8 +246,7 @@ TEST(LightExport, EverythingPointsTheSameWay) {
   // The picture: C30 to the right and down, and nothing to the left.
   PolarPlot plot;
   plot.planes = {rad(30), rad(120)};
-  EXPECT_NEAR(svg_angle(polar_svg(light, plot), "plane0", polar_scale(light, plot)), rad(40),
-              rad(0.6));
+  EXPECT_NEAR(svg_angle(polar_svg(light, plot), "plane0", polar_scale(light, plot)), rad(40), rad(0.6));
   // In the default planes the stronger side of both is on the right: towards C0 and C90.
   const std::string svg = polar_svg(light);
   EXPECT_GT(svg_angle(svg, "plane0", polar_scale(light)), rad(20));
@@ -265,16 +254,12 @@ TEST(LightExport, EverythingPointsTheSameWay) {
 }
 
 TEST(LightExport, SolidIsClosedAndFacesOut) {
-  const Mesh mesh =
-      photometric_solid(bilinear_reconstruction(testing::asymmetric().diagram), 36, 72, 1);
+  const Mesh mesh = photometric_solid(bilinear_reconstruction(testing::asymmetric().diagram), 36, 72, 1);
   std::map<std::pair<int, int>, int> edges;
   double volume = 0;
   for (const auto& t : mesh.triangles) {
-    for (int k = 0; k < 3; ++k)
-      ++edges[{t[static_cast<std::size_t>(k)], t[static_cast<std::size_t>((k + 1) % 3)]}];
-    const auto v = [&](std::size_t k) {
-      return Vec3<double>(mesh.vertices[static_cast<std::size_t>(t[k])]);
-    };
+    for (int k = 0; k < 3; ++k) ++edges[{t[static_cast<std::size_t>(k)], t[static_cast<std::size_t>((k + 1) % 3)]}];
+    const auto v = [&](std::size_t k) { return Vec3<double>(mesh.vertices[static_cast<std::size_t>(t[k])]); };
     volume += glm::dot(v(0), glm::cross(v(1), v(2))) / 6;
   }
   for (const auto& [edge, count] : edges) {
@@ -282,8 +267,7 @@ TEST(LightExport, SolidIsClosedAndFacesOut) {
     EXPECT_TRUE(edges.count({edge.second, edge.first}));
   }
   EXPECT_GT(volume, 0);
-  EXPECT_THROW(photometric_solid(bilinear_reconstruction(testing::asymmetric().diagram), 1, 72, 1),
-               Error);
+  EXPECT_THROW(photometric_solid(bilinear_reconstruction(testing::asymmetric().diagram), 1, 72, 1), Error);
 }
 
 TEST(LightExport, OwnFileKeepsEverything) {
@@ -310,9 +294,8 @@ TEST(LightExport, OwnFileKeepsEverything) {
 TEST(LightExport, SymmetryIsThatOfTheFrame) {
   const TemporaryFile own("own.exr");
   Luminaire light = testing::asymmetric();
-  light.diagram = testing::tabulate(36, 18, pi<double>, [](double c, double g) {
-    return 100 * (2 + std::sin(c)) * std::exp(-g);
-  });
+  light.diagram =
+      testing::tabulate(36, 18, pi<double>, [](double c, double g) { return 100 * (2 + std::sin(c)) * std::exp(-g); });
   save_light(own.path(), light);
   EXPECT_EQ(load_light_exr(own.path()).symmetry, LightSymmetry::c90_c270);
   light.diagram.frame.c0 = {0, 1, 0}, light.diagram.frame.c90 = {-1, 0, 0};  // a quarter turn
@@ -335,9 +318,7 @@ TEST(LightExport, BadFilesAreRefused) {
   std::filesystem::resize_file(own.path(), size / 2);
   EXPECT_THROW(load_light_exr(own.path()), Error);
   EXPECT_THROW(save_light("/nonexistent/folder/x.exr", testing::lambertian()), Error);
-  EXPECT_THROW(
-      save_octahedral(own.path(), bilinear_reconstruction(testing::lambertian().diagram), 2),
-      Error);
+  EXPECT_THROW(save_octahedral(own.path(), bilinear_reconstruction(testing::lambertian().diagram), 2), Error);
 }
 
 TEST(LightExport, PolarDiagramShowsWhatItSays) {
@@ -367,8 +348,7 @@ TEST(LightExport, PolarDiagramShowsWhatItSays) {
 TEST(LightExport, PolarAxisHoldsTheMaximum) {
   const Luminaire light = testing::asymmetric();  // I max is 1000 cd at C 30
   PolarPlot plot;
-  for (const std::vector<double>& planes :
-       {std::vector<double>{rad(30)}, {rad(31)}, {0, rad(90)}, {rad(120)}}) {
+  for (const std::vector<double>& planes : {std::vector<double>{rad(30)}, {rad(31)}, {0, rad(90)}, {rad(120)}}) {
     plot.planes = planes;
     const PolarScale scale = polar_scale(light, plot);
     EXPECT_GE(230 / scale.radius_per_unit, 1000 * (1 - 1e-9));

@@ -1,8 +1,9 @@
-#include <gonio/mapping/base/error.h>
-#include <gonio/mapping/light/photometry.h>
+#include <numeric>
+
 #include <gtest/gtest.h>
 
-#include <numeric>
+#include <gonio/mapping/base/error.h>
+#include <gonio/mapping/light/photometry.h>
 
 #include "tests/support/light_cases.h"
 
@@ -20,8 +21,7 @@ TEST(Photometry, Lambertian) {
   EXPECT_EQ(p.max_at.gamma, 0);
   EXPECT_NEAR(p.c0.beam, rad(120), 1e-9);  // cos 60 degrees = 1/2, a line of the table
   EXPECT_NEAR(p.c0.field, 2 * std::acos(0.1), 1e-5);
-  EXPECT_NEAR(p.zones[2], 1000 * (std::pow(std::sin(rad(30)), 2) - std::pow(std::sin(rad(20)), 2)),
-              0.02);
+  EXPECT_NEAR(p.zones[2], 1000 * (std::pow(std::sin(rad(30)), 2) - std::pow(std::sin(rad(20)), 2)), 0.02);
   EXPECT_NEAR(std::accumulate(p.zones.begin(), p.zones.end(), 0.0), p.flux, 1e-9);
   EXPECT_NEAR(*light_output_ratio(light), 1, 1e-4);
   EXPECT_NEAR(*efficacy(light), 100, 0.01);
@@ -36,8 +36,7 @@ TEST(Photometry, FluxIsTheIntegralOfTheBilinearDiagram) {
     for (int j = 0; j < n; ++j)
       for (int i = 0; i < m; ++i) {
         const double g = from + (to - from) * (j + 0.5) / n;
-        total += d.intensity(LightAngles{rad(0.5 * i + 0.25), g}) * std::sin(g) * (to - from) / n *
-                 rad(0.5);
+        total += d.intensity(LightAngles{rad(0.5 * i + 0.25), g}) * std::sin(g) * (to - from) / n * rad(0.5);
       }
     return total;
   };
@@ -67,17 +66,15 @@ TEST(Photometry, FluxAndMaximumDoNotDependOnTheFrame) {
   d.frame.nadir = {1, 0, 0}, d.frame.c0 = {0, 0, 1}, d.frame.c90 = {0, 1, 0};
   const Photometry p = photometry(d);
   EXPECT_EQ(p.max_cd, 1000);
-  EXPECT_LT(glm::length(LightFrame{}.direction(p.max_at.c, p.max_at.gamma) -
-                        d.frame.direction(rad(30), rad(40))),
+  EXPECT_LT(glm::length(LightFrame{}.direction(p.max_at.c, p.max_at.gamma) - d.frame.direction(rad(30), rad(40))),
             1e-12);
   EXPECT_DOUBLE_EQ(p.flux, flux(d));
 }
 
 TEST(Photometry, SpreadIsTheSmallestArc) {
   // Two wings with a dark nadir: the arc holds both, through the nadir.
-  LightDiagram wings = testing::tabulate(1, 180, pi<double>, [](double, double g) {
-    return std::max(0.0, 1 - std::abs(g - rad(45)) / rad(20));
-  });
+  LightDiagram wings = testing::tabulate(
+      1, 180, pi<double>, [](double, double g) { return std::max(0.0, 1 - std::abs(g - rad(45)) / rad(20)); });
   EXPECT_NEAR(photometry(wings).c0.beam, rad(110), 1e-9);  // 2 (45 + 10)
   // An even sphere: everything.
   LightDiagram even = testing::tabulate(1, 2, pi<double>, [](double, double) { return 5.0; });

@@ -1,9 +1,9 @@
 // Makes the BSDF of the table named by the argument, stores it beside the table and samples it as loaded.
-#include <gonio/brdf/build/compact/fit_compact.h>
-#include <gonio/brdf/exr/stack_file.h>
-
 #include <memory>
 #include <string>
+
+#include <gonio/brdf/build/compact/fit_compact.h>
+#include <gonio/brdf/exr/stack_file.h>
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;

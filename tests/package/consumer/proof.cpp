@@ -1,8 +1,8 @@
 // Proves the cosine sampler of a table.
+#include <memory>
+
 #include <gonio/brdf/proof/invariants.h>
 #include <gonio/brdf/proof/samplers/baseline.h>
-
-#include <memory>
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;

@@ -1,11 +1,11 @@
 // Samples the table named by the argument and checks each draw against pdf() and eval().
-#include <gonio/brdf/build/make_bsdf.h>
-#include <gonio/brdf/table/table.h>
-
 #include <cmath>
 #include <cstdio>
 #include <memory>
 #include <utility>
+
+#include <gonio/brdf/build/make_bsdf.h>
+#include <gonio/brdf/table/table.h>
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;

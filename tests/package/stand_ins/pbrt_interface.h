@@ -28,14 +28,7 @@ struct SampledSpectrum {
 
 enum class TransportMode { Radiance, Importance };
 enum class BxDFReflTransFlags { Unset = 0, Reflection = 1, Transmission = 2, All = 3 };
-enum class BxDFFlags {
-  Unset = 0,
-  Reflection = 1,
-  Transmission = 2,
-  Diffuse = 4,
-  Glossy = 8,
-  GlossyReflection = 9
-};
+enum class BxDFFlags { Unset = 0, Reflection = 1, Transmission = 2, Diffuse = 4, Glossy = 8, GlossyReflection = 9 };
 
 /// f without the cosine; wi is the direction that was drawn.
 struct BSDFSample {
@@ -65,8 +58,7 @@ class ScratchBuffer {
 
 /// What Material::GetBSDF() does at a hit, the frame apart.
 template <class ConcreteMaterial>
-const typename ConcreteMaterial::BxDF& GetBSDF(const ConcreteMaterial& material,
-                                               ScratchBuffer& buffer) {
+const typename ConcreteMaterial::BxDF& GetBSDF(const ConcreteMaterial& material, ScratchBuffer& buffer) {
   auto* bxdf = buffer.Alloc<typename ConcreteMaterial::BxDF>();
   SampledWavelengths lambda;
   *bxdf = material.GetBxDF(TextureEvaluator{}, MaterialEvalContext{}, lambda);

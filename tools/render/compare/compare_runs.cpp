@@ -8,6 +8,7 @@
 #include <memory>
 
 #include <gonio/mapping/base/error.h>
+
 #include "tools/render/image/difference.h"
 
 namespace gonio {
@@ -20,7 +21,8 @@ double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_P
 /// A render with the time it has used.
 class Timed {
  public:
-  Timed(const Scene& scene, const RenderOptions& options, const std::shared_ptr<const World>& world) : film_(scene, options, world) {}
+  Timed(const Scene& scene, const RenderOptions& options, const std::shared_ptr<const World>& world)
+      : film_(scene, options, world) {}
 
   /// At most a slice, and no further than the next power of two.
   void go_on() {
@@ -96,7 +98,8 @@ std::vector<std::size_t> compared_pixels(const Scene& scene, const std::shared_p
     for (int x = 0; x < scene.camera.width; ++x) {
       const auto object = tracer.first_object(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
       if (object && std::find(compared.begin(), compared.end(), scene.objects[*object].material) != compared.end())
-        pixels.push_back(static_cast<std::size_t>(y) * static_cast<std::size_t>(scene.camera.width) + static_cast<std::size_t>(x));
+        pixels.push_back(static_cast<std::size_t>(y) * static_cast<std::size_t>(scene.camera.width) +
+                         static_cast<std::size_t>(x));
     }
   return pixels;
 }
@@ -121,7 +124,8 @@ bool method_available(const Scene& scene, SamplingMethod method) {
   const std::vector<std::size_t> compared = compared_materials(scene);
   return std::all_of(compared.begin(), compared.end(), [&](std::size_t k) {
     const Material& m = scene.materials[k];
-    return m.table ? MethodBuilder(m.table, m.model).available(method) : method == SamplingMethod::automatic || method == SamplingMethod::cosine;
+    return m.table ? MethodBuilder(m.table, m.model).available(method)
+                   : method == SamplingMethod::automatic || method == SamplingMethod::cosine;
   });
 }
 
@@ -148,7 +152,8 @@ Comparison compare_methods(const Scene& scene, const CompareOptions& options, co
     scenes.emplace(method, variants.make(method));
     build_seconds[method] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
-  if (scenes.count(SamplingMethod::automatic) == 0) scenes.emplace(SamplingMethod::automatic, variants.make(SamplingMethod::automatic));
+  if (scenes.count(SamplingMethod::automatic) == 0)
+    scenes.emplace(SamplingMethod::automatic, variants.make(SamplingMethod::automatic));
 
   // The reference: two halves with seeds of their own.
   std::vector<RgbImage> halves;
@@ -162,7 +167,8 @@ Comparison compare_methods(const Scene& scene, const CompareOptions& options, co
   }
   result.reference = mean_of(halves[0], halves[1]);
   // A half is as far from the mean of both as that mean is from the truth, in expectation.
-  for (const RgbImage& half : halves) result.reference_relmse += relative_error(half, result.reference, pixels).relmse / 2;
+  for (const RgbImage& half : halves)
+    result.reference_relmse += relative_error(half, result.reference, pixels).relmse / 2;
 
   std::vector<std::unique_ptr<Timed>> timed;
   for (const Strategy strategy : {Strategy::mis, Strategy::bsdf})
@@ -175,7 +181,8 @@ Comparison compare_methods(const Scene& scene, const CompareOptions& options, co
   while (true) {
     std::size_t next = timed.size();
     for (std::size_t k = 0; k < timed.size(); ++k)
-      if (!timed[k]->done(options.seconds) && (next == timed.size() || timed[k]->seconds() < timed[next]->seconds())) next = k;
+      if (!timed[k]->done(options.seconds) && (next == timed.size() || timed[k]->seconds() < timed[next]->seconds()))
+        next = k;
     if (next == timed.size()) break;
     Timed& run = *timed[next];
     advance(run);
@@ -183,8 +190,9 @@ Comparison compare_methods(const Scene& scene, const CompareOptions& options, co
     if (!run.at_power_of_two() && !last) continue;
     const RgbImage image = run.film().radiance();
     const RelativeError error = relative_error(image, result.reference, pixels);
-    result.runs[next].convergence.push_back(
-        {run.film().samples(), run.seconds(), std::max(error.relmse - result.reference_relmse, 0.0), error.standard_error});
+    result.runs[next].convergence.push_back({run.film().samples(), run.seconds(),
+                                             std::max(error.relmse - result.reference_relmse, 0.0),
+                                             error.standard_error});
     if (last) result.runs[next].image = image;
   }
   int fewest = result.runs.front().convergence.back().samples;

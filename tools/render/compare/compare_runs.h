@@ -1,10 +1,10 @@
 #pragma once
 
-#include "tools/render/trace/film.h"
-#include "tools/render/scene/scene.h"
-
 #include <string>
 #include <vector>
+
+#include "tools/render/scene/scene.h"
+#include "tools/render/trace/film.h"
 
 namespace gonio {
 

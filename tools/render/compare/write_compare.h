@@ -1,8 +1,9 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
+
+#include <nlohmann/json.hpp>
 
 #include "tools/render/compare/compare_runs.h"
 
@@ -13,6 +14,7 @@ nlohmann::json to_json(const Comparison& comparison, const std::string& scene, c
 
 /// Writes compare.json, compare.md, compare.html, and the pictures that they refer to, into a folder that exists.
 /// @throws Error if it cannot be written to.
-void write_comparison(const std::filesystem::path& folder, const Comparison& comparison, const std::string& scene, const CompareOptions& options);
+void write_comparison(const std::filesystem::path& folder, const Comparison& comparison, const std::string& scene,
+                      const CompareOptions& options);
 
 }  // namespace gonio

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <gonio/brdf/table/table.h>
+
 #include "tools/render/image/tone_map.h"
 
 namespace gonio {

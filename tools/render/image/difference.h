@@ -1,10 +1,10 @@
 #pragma once
 
-#include "tools/render/image/exr_image.h"
-
 #include <cstddef>
 #include <string>
 #include <vector>
+
+#include "tools/render/image/exr_image.h"
 
 namespace gonio {
 

@@ -1,9 +1,10 @@
 #pragma once
 
-#include <glm/vec2.hpp>
-#include <glm/vec3.hpp>
 #include <optional>
 #include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 
 #include "tools/render/image/exr_image.h"
 
@@ -45,8 +46,8 @@ class Environment {
   RgbImage image_;
   float turn_;
   float power_ = 0;
-  std::vector<float> rows_;     // cumulative share of rows 0 ... height
-  std::vector<float> columns_;  // of each row, columns 0 ... width
+  std::vector<float> rows_;          // cumulative share of rows 0 ... height
+  std::vector<float> columns_;       // of each row, columns 0 ... width
   std::vector<float> solid_angles_;  // of a pixel of each row [sr]
 };
 

@@ -1,14 +1,14 @@
 #include "tools/render/image/exr_image.h"
 
+#include <cmath>
+#include <utility>
+
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfStdIO.h>
-
-#include <cmath>
-#include <utility>
 
 #include <gonio/brdf/exr/check_attributes.h>
 #include <gonio/brdf/exr/stack_file.h>
@@ -24,12 +24,16 @@ RgbImage load(const std::string& file) {
   check_attribute_sizes(file);
   Imf::InputFile input(file.c_str(), 1);
   // Files of ours have channels of the same names with another meaning.
-  for (const auto& [attribute, found] : {std::pair{"gonio:format", "a stack file"}, {"gonioLight", "a luminaire"}, {"gonio:quantity", "an image of a normal distribution"}})
-    if (input.header().find(attribute) != input.header().end()) throw Error(file + ": content: found " + found + ", expected a picture");
+  for (const auto& [attribute, found] : {std::pair{"gonio:format", "a stack file"},
+                                         {"gonioLight", "a luminaire"},
+                                         {"gonio:quantity", "an image of a normal distribution"}})
+    if (input.header().find(attribute) != input.header().end())
+      throw Error(file + ": content: found " + found + ", expected a picture");
   const auto& window = input.header().dataWindow();
   const long long width = 1LL + window.max.x - window.min.x, height = 1LL + window.max.y - window.min.y;
   if (width < 1 || height < 1 || width * height > max_pixels)
-    throw Error(file + ": size: found " + std::to_string(width) + " x " + std::to_string(height) + ", expected at most 2^28 pixels");
+    throw Error(file + ": size: found " + std::to_string(width) + " x " + std::to_string(height) +
+                ", expected at most 2^28 pixels");
   RgbImage image{static_cast<int>(width), static_cast<int>(height), {}};
   image.pixels.resize(static_cast<std::size_t>(width * height));
   const bool grey = input.header().channels().findChannel("R") == nullptr;
@@ -78,7 +82,8 @@ void save_layers(const std::filesystem::path& path, const std::vector<ImageLayer
         header.channels().insert(name, Imf::Channel(Imf::FLOAT));
         // OpenEXR's interface for reading and writing is one: it does not write to these pixels.
         float* base = const_cast<float*>(&layer.image->pixels.front()[static_cast<int>(c)]);
-        buffer.insert(name, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(base), sizeof(glm::vec3), sizeof(glm::vec3) * static_cast<std::size_t>(width)));
+        buffer.insert(name, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(base), sizeof(glm::vec3),
+                                       sizeof(glm::vec3) * static_cast<std::size_t>(width)));
       }
     Imf::OutputFile output(bytes, header, 1);
     output.setFrameBuffer(buffer);

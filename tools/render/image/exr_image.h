@@ -1,9 +1,10 @@
 #pragma once
 
 #include <filesystem>
-#include <glm/vec3.hpp>
 #include <string>
 #include <vector>
+
+#include <glm/vec3.hpp>
 
 namespace gonio {
 
@@ -19,9 +20,9 @@ RgbImage load_rgb(const std::filesystem::path& path);
 
 /// Channels of 32-bit floats by name: `prefix`R, `prefix`G, `prefix`B of each layer.
 struct ImageLayer {
-  std::string prefix;  ///< "" or "albedo."
+  std::string prefix;                 ///< "" or "albedo."
   std::vector<std::string> channels;  ///< "R", "G", "B", or "X", "Y", "Z", or one alone
-  const RgbImage* image;  ///< the channels take r, g, b in this order
+  const RgbImage* image;              ///< the channels take r, g, b in this order
 };
 
 /// Writes one OpenEXR file, or leaves `path` as it was. All layers have the size of the first.

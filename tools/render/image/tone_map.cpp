@@ -1,11 +1,11 @@
 #include "tools/render/image/tone_map.h"
 
-#include <png.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+
 #include <glm/common.hpp>
+#include <png.h>
 
 #include <gonio/brdf/table/table.h>
 #include <gonio/mapping/base/error.h>
@@ -40,7 +40,8 @@ std::string tone_mapped_png(const RgbImage& image, float exposure) {
     p *= exposure;
     const float l = luminance(p);
     p = l > 0 && std::isfinite(l) ? p * ((1 + l / (white * white)) / (1 + l)) : glm::vec3(0);
-    for (int c = 0; c < 3; ++c) bytes.push_back(static_cast<unsigned char>(std::lround(255 * srgb_curve(std::clamp(p[c], 0.0f, 1.0f)))));
+    for (int c = 0; c < 3; ++c)
+      bytes.push_back(static_cast<unsigned char>(std::lround(255 * srgb_curve(std::clamp(p[c], 0.0f, 1.0f)))));
   }
   return encode_png(image.width, image.height, bytes);
 }

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "tools/render/image/exr_image.h"
-
 #include <string>
+
+#include "tools/render/image/exr_image.h"
 
 namespace gonio {
 

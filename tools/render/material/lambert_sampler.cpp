@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include <gonio/mapping/charts/concentric.h>
+
 #include "tools/render/material/scatter.h"
 
 namespace gonio {

@@ -9,12 +9,14 @@
 #include <gonio/fitting/sampling/lobe_sampler.h>
 #include <gonio/mapping/base/did_you_mean.h>
 #include <gonio/mapping/base/error.h>
+
 #include "tools/measure/table_fits.h"
 
 namespace gonio {
 
 const char* to_string(SamplingMethod method) noexcept {
-  static constexpr const char* names[] = {"default", "cosine", "lobes1", "lobes2", "lobes3", "nearest", "mixture", "displacement", "half", "rgl"};
+  static constexpr const char* names[] = {"default", "cosine",  "lobes1",       "lobes2", "lobes3",
+                                          "nearest", "mixture", "displacement", "half",   "rgl"};
   return names[static_cast<std::size_t>(method)];
 }
 
@@ -30,7 +32,8 @@ std::vector<std::string> sampling_method_names() {
   return names;
 }
 
-MethodBuilder::MethodBuilder(std::shared_ptr<const BrdfTable> table, std::optional<LobeModel> model, const BsdfOptions& options)
+MethodBuilder::MethodBuilder(std::shared_ptr<const BrdfTable> table, std::optional<LobeModel> model,
+                             const BsdfOptions& options)
     : table_(std::move(table)), options_(options), given_(model.has_value()) {
   if (model) fits_.push_back(std::move(*model));
 }
@@ -42,7 +45,8 @@ bool MethodBuilder::available(SamplingMethod method) const noexcept {
 
 const LobeModel& MethodBuilder::lobes(std::size_t count) {
   if (fits_.empty())
-    for (StageFit& stage : fit_table(*table_, parse_model(default_fit_form)).stages) fits_.push_back(std::move(stage.fit.model));
+    for (StageFit& stage : fit_table(*table_, parse_model(default_fit_form)).stages)
+      fits_.push_back(std::move(stage.fit.model));
   return fits_.at(count - 1);
 }
 
@@ -56,23 +60,35 @@ const StackGrid& MethodBuilder::outgoing(const Progress& progress) {
 }
 
 std::shared_ptr<const Scatter> MethodBuilder::build(SamplingMethod method, const Progress& progress) {
-  if (!available(method)) throw Error(table_->info().source + ": sampling: found " + to_string(method) + ", expected a method for a " + table_->info().format + " file");
+  if (!available(method))
+    throw Error(table_->info().source + ": sampling: found " + to_string(method) + ", expected a method for a " +
+                table_->info().format + " file");
   switch (method) {
-    case SamplingMethod::automatic: return make_scatter(make_bsdf(table_, {}, progress));
-    case SamplingMethod::cosine: return make_scatter(CosineSampler(table_));
-    case SamplingMethod::lobes1: return make_scatter(LobeSampler(table_, lobes(1)));
-    case SamplingMethod::lobes2: return make_scatter(LobeSampler(table_, lobes(2)));
-    case SamplingMethod::lobes3: return make_scatter(LobeSampler(table_, lobes(3)));
-    case SamplingMethod::nearest: return make_scatter(Bsdf({outgoing(progress), Interpolation::nearest, Storage::float32, {}}, table_));
-    case SamplingMethod::mixture: return make_scatter(StackBsdf({outgoing(progress), Interpolation::mixture, Storage::float32, {}}, table_));
-    case SamplingMethod::displacement: return make_scatter(Bsdf({outgoing(progress), Interpolation::displacement, Storage::float32, {}}, table_));
+    case SamplingMethod::automatic:
+      return make_scatter(make_bsdf(table_, {}, progress));
+    case SamplingMethod::cosine:
+      return make_scatter(CosineSampler(table_));
+    case SamplingMethod::lobes1:
+      return make_scatter(LobeSampler(table_, lobes(1)));
+    case SamplingMethod::lobes2:
+      return make_scatter(LobeSampler(table_, lobes(2)));
+    case SamplingMethod::lobes3:
+      return make_scatter(LobeSampler(table_, lobes(3)));
+    case SamplingMethod::nearest:
+      return make_scatter(Bsdf({outgoing(progress), Interpolation::nearest, Storage::float32, {}}, table_));
+    case SamplingMethod::mixture:
+      return make_scatter(StackBsdf({outgoing(progress), Interpolation::mixture, Storage::float32, {}}, table_));
+    case SamplingMethod::displacement:
+      return make_scatter(Bsdf({outgoing(progress), Interpolation::displacement, Storage::float32, {}}, table_));
     case SamplingMethod::half: {
       BsdfOptions options = options_;
       options.chart = Chart::half;
       options.interpolation = Interpolation::blend;
-      return make_scatter(Bsdf({build_stack(*table_, options, progress), Interpolation::blend, Storage::float32, {}}, table_));
+      return make_scatter(
+          Bsdf({build_stack(*table_, options, progress), Interpolation::blend, Storage::float32, {}}, table_));
     }
-    case SamplingMethod::rgl: return make_scatter(RglSampler(table_));
+    case SamplingMethod::rgl:
+      return make_scatter(RglSampler(table_));
   }
   throw Error("sampling: found none, expected " + one_of(sampling_method_names(), ""));
 }

@@ -1,10 +1,11 @@
 #pragma once
 
-#include <glm/vec2.hpp>
-#include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
 #include <utility>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 
 #include <gonio/brdf/value/bsdf_sample.h>
 
@@ -25,7 +26,9 @@ template <class S>
 class ScatterOf final : public Scatter {
  public:
   explicit ScatterOf(S sampler) : sampler_(std::move(sampler)) {}
-  std::optional<BsdfSample> sample(const glm::vec3& wi, const glm::vec2& u) const noexcept override { return sampler_.sample(wi, u); }
+  std::optional<BsdfSample> sample(const glm::vec3& wi, const glm::vec2& u) const noexcept override {
+    return sampler_.sample(wi, u);
+  }
   float pdf(const glm::vec3& wi, const glm::vec3& wo) const noexcept override { return sampler_.pdf(wi, wo); }
   glm::vec3 eval(const glm::vec3& wi, const glm::vec3& wo) const noexcept override { return sampler_.eval(wi, wo); }
 

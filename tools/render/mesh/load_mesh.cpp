@@ -1,13 +1,14 @@
-#include "tools/render/mesh/mesh.h"
+#include <limits>
+#include <utility>
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
-#include <limits>
-#include <utility>
 
 #include <gonio/mapping/base/bytes.h>
 #include <gonio/mapping/base/error.h>
+
+#include "tools/render/mesh/mesh.h"
 #include "tools/render/mesh/read_mesh.h"
 #include "tools/render/mesh/words.h"
 
@@ -15,8 +16,10 @@ namespace gonio {
 
 TriangleMesh read_mesh(std::string_view bytes, const std::string& where) {
   // Every vertex takes a byte and more: so its index has 32 bits.
-  if (bytes.size() > std::numeric_limits<std::uint32_t>::max()) throw Error(where + ": found " + std::to_string(bytes.size()) + " bytes, expected at most 4 GiB");
-  if (bytes.substr(0, 2) == "\xff\xfe" || bytes.substr(0, 2) == "\xfe\xff") throw Error(where + ": found UTF-16, expected PLY or OBJ in ASCII");
+  if (bytes.size() > std::numeric_limits<std::uint32_t>::max())
+    throw Error(where + ": found " + std::to_string(bytes.size()) + " bytes, expected at most 4 GiB");
+  if (bytes.substr(0, 2) == "\xff\xfe" || bytes.substr(0, 2) == "\xfe\xff")
+    throw Error(where + ": found UTF-16, expected PLY or OBJ in ASCII");
   std::string_view rest = bytes;
   const bool ply = !bytes.empty() && next_line(rest) == "ply";
   TriangleMesh mesh = ply ? read_ply(bytes, where) : read_obj(bytes, where);

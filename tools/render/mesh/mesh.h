@@ -3,11 +3,12 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
-#include <glm/mat4x4.hpp>
-#include <glm/vec3.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
 
 namespace gonio {
 

@@ -1,10 +1,10 @@
-#include "tools/render/mesh/read_mesh.h"
-
 #include <array>
 #include <set>
 #include <vector>
 
 #include <gonio/mapping/base/error.h>
+
+#include "tools/render/mesh/read_mesh.h"
 #include "tools/render/mesh/triangulate.h"
 #include "tools/render/mesh/words.h"
 
@@ -14,8 +14,10 @@ namespace {
 /// What else the format has (Wavefront, appendix B1): materials, names, texture coordinates, lines, points, curves.
 const std::set<std::string_view>& other_keywords() {
   static const std::set<std::string_view> all = {
-      "g", "s", "o", "mg", "p", "l", "vp", "usemtl", "mtllib", "usemap", "maplib", "bevel", "c_interp", "d_interp", "lod", "shadow_obj", "trace_obj",
-      "ctech", "stech", "cstype", "deg", "bmat", "step", "curv", "curv2", "surf", "parm", "trim", "hole", "scrv", "sp", "end", "con", "call", "csh"};
+      "g",      "s",      "o",     "mg",       "p",        "l",    "vp",         "usemtl",    "mtllib",
+      "usemap", "maplib", "bevel", "c_interp", "d_interp", "lod",  "shadow_obj", "trace_obj", "ctech",
+      "stech",  "cstype", "deg",   "bmat",     "step",     "curv", "curv2",      "surf",      "parm",
+      "trim",   "hole",   "scrv",  "sp",       "end",      "con",  "call",       "csh"};
   return all;
 }
 
@@ -82,12 +84,15 @@ class ObjReader {
 
   void face(std::string_view rest) {
     Face face{line_, {}};
-    for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) face.corners.push_back(corner(word));
-    if (face.corners.size() < 3) fail(line_, "a face of " + std::to_string(face.corners.size()) + " corners", "at least three");
+    for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest))
+      face.corners.push_back(corner(word));
+    if (face.corners.size() < 3)
+      fail(line_, "a face of " + std::to_string(face.corners.size()) + " corners", "at least three");
     faces_.push_back(std::move(face));
   }
 
-  /// "position", "position/texture", "position//normal" or "position/texture/normal"; negative ones count back from here.
+  /// "position", "position/texture", "position//normal" or "position/texture/normal"; negative ones count back from
+  /// here.
   Corner corner(std::string_view word) const {
     const std::array<std::size_t, 3> count = {positions_.size(), texture_count_, normals_.size()};
     Corner corner{};
@@ -98,7 +103,8 @@ class ObjReader {
       const auto number = to_number<long>(part);
       const long value = number.value_or(0);
       const bool left_out = part.empty() && k == 1;
-      if (!left_out && (value == 0 || value < -static_cast<long>(count[k]))) fail(line_, quoted(word), "a corner of indices from 1, or negative ones that count back");
+      if (!left_out && (value == 0 || value < -static_cast<long>(count[k])))
+        fail(line_, quoted(word), "a corner of indices from 1, or negative ones that count back");
       corner.index[k] = static_cast<std::size_t>(value < 0 ? static_cast<long>(count[k]) + 1 + value : value);
       if (slash == rest.npos) return corner;
       rest.remove_prefix(slash + 1);
@@ -116,7 +122,8 @@ class ObjReader {
         normals = normals && corner.index[2] != 0;
         for (std::size_t k = 0; k < 3; ++k)
           if (corner.index[k] > count[k])
-            fail(face.line, name[k] + (" " + std::to_string(corner.index[k])), "at most " + std::to_string(count[k]) + ", which the file has");
+            fail(face.line, name[k] + (" " + std::to_string(corner.index[k])),
+                 "at most " + std::to_string(count[k]) + ", which the file has");
       }
     TriangleMesh mesh;
     for (const Face& face : faces_) {
@@ -127,7 +134,8 @@ class ObjReader {
         if (normals) mesh.normals.push_back(normals_[corner.index[2] - 1]);
       }
       if (!add_polygon(mesh, std::move(polygon)))
-        fail(face.line, "a face of " + std::to_string(face.corners.size()) + " corners that is not convex", "at most " + std::to_string(max_corners) + " corners");
+        fail(face.line, "a face of " + std::to_string(face.corners.size()) + " corners that is not convex",
+             "at most " + std::to_string(max_corners) + " corners");
     }
     return mesh;
   }

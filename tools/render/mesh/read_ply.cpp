@@ -1,5 +1,3 @@
-#include "tools/render/mesh/read_mesh.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -7,7 +5,9 @@
 #include <vector>
 
 #include <gonio/mapping/base/error.h>
+
 #include "tools/cli/number.h"
+#include "tools/render/mesh/read_mesh.h"
 #include "tools/render/mesh/triangulate.h"
 #include "tools/render/mesh/words.h"
 
@@ -28,10 +28,10 @@ double value_of(const char* bytes) {
 }
 
 constexpr Type types[] = {
-    {"char", "int8", 1, value_of<std::int8_t>},   {"uchar", "uint8", 1, value_of<std::uint8_t>},
+    {"char", "int8", 1, value_of<std::int8_t>},    {"uchar", "uint8", 1, value_of<std::uint8_t>},
     {"short", "int16", 2, value_of<std::int16_t>}, {"ushort", "uint16", 2, value_of<std::uint16_t>},
-    {"int", "int32", 4, value_of<std::int32_t>},  {"uint", "uint32", 4, value_of<std::uint32_t>},
-    {"float", "float32", 4, value_of<float>},     {"double", "float64", 8, value_of<double>},
+    {"int", "int32", 4, value_of<std::int32_t>},   {"uint", "uint32", 4, value_of<std::uint32_t>},
+    {"float", "float32", 4, value_of<float>},      {"double", "float64", 8, value_of<double>},
 };
 
 struct Property {
@@ -56,7 +56,9 @@ class PlyReader {
       // Every value takes a byte, so that no count keeps anyone busy whose values are not there.
       if (element.properties.empty()) continue;
       if (element.count > rest_.size() / element.properties.size())
-        fail("element " + element.name, std::to_string(element.count) + " of them and " + std::to_string(rest_.size()) + " bytes", "as many as the file holds");
+        fail("element " + element.name,
+             std::to_string(element.count) + " of them and " + std::to_string(rest_.size()) + " bytes",
+             "as many as the file holds");
       if (element.name == "vertex") {
         vertices(element);
       } else if (element.name == "face") {
@@ -161,9 +163,11 @@ class PlyReader {
   }
 
   /// A number that has to be a whole one, from 0 to below `limit`.
-  std::size_t whole(double value, std::size_t limit, const Element& element, std::size_t k, const std::string& what) const {
+  std::size_t whole(double value, std::size_t limit, const Element& element, std::size_t k,
+                    const std::string& what) const {
     if (!(value >= 0 && value < static_cast<double>(limit) && value == std::floor(value)))
-      fail(element.name + " " + std::to_string(k), what + " " + gonio::number(value, 10), "a whole number from 0 to below " + std::to_string(limit));
+      fail(element.name + " " + std::to_string(k), what + " " + gonio::number(value, 10),
+           "a whole number from 0 to below " + std::to_string(limit));
     return static_cast<std::size_t>(value);
   }
 
@@ -174,7 +178,8 @@ class PlyReader {
       const Property& property = element.properties[p];
       row_[p].clear();
       std::size_t count = 1;
-      if (property.count_type) count = whole(number(*property.count_type, element, k), rest_.size() + 1, element, k, "a list of length");
+      if (property.count_type)
+        count = whole(number(*property.count_type, element, k), rest_.size() + 1, element, k, "a list of length");
       for (std::size_t j = 0; j < count; ++j) row_[p].push_back(number(*property.type, element, k));
     }
   }
@@ -187,18 +192,22 @@ class PlyReader {
   }
 
   /// The properties of these names, single numbers, or none if any of them is missing.
-  std::optional<std::array<std::size_t, 3>> find_three(const Element& element, const std::array<const char*, 3>& names) const {
+  std::optional<std::array<std::size_t, 3>> find_three(const Element& element,
+                                                       const std::array<const char*, 3>& names) const {
     std::array<std::size_t, 3> all{};
     for (std::size_t c = 0; c < 3; ++c) {
       const auto found = find(element, names[c]);
       if (!found) return std::nullopt;
-      if (element.properties[*found].count_type) fail("element " + element.name, std::string("a list ") + names[c], "one number");
+      if (element.properties[*found].count_type)
+        fail("element " + element.name, std::string("a list ") + names[c], "one number");
       all[c] = *found;
     }
     return all;
   }
 
-  glm::vec3 vector(const std::array<std::size_t, 3>& p) const { return glm::vec3(glm::dvec3(row_[p[0]][0], row_[p[1]][0], row_[p[2]][0])); }
+  glm::vec3 vector(const std::array<std::size_t, 3>& p) const {
+    return glm::vec3(glm::dvec3(row_[p[0]][0], row_[p[1]][0], row_[p[2]][0]));
+  }
 
   void vertices(const Element& element) {
     const auto position = find_three(element, {"x", "y", "z"}), normal = find_three(element, {"nx", "ny", "nz"});
@@ -221,7 +230,8 @@ class PlyReader {
         polygon.push_back(static_cast<std::uint32_t>(whole(value, mesh_.positions.size(), element, k, "a vertex")));
       const std::string here = "face " + std::to_string(k), size = std::to_string(polygon.size()) + " corners";
       if (polygon.size() < 3) fail(here, size, "at least three");
-      if (!add_polygon(mesh_, std::move(polygon))) fail(here, size + ", not convex", "at most " + std::to_string(max_corners));
+      if (!add_polygon(mesh_, std::move(polygon)))
+        fail(here, size + ", not convex", "at most " + std::to_string(max_corners));
     }
   }
 

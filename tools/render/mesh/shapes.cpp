@@ -1,7 +1,6 @@
-#include "tools/render/mesh/mesh.h"
-
 #include <algorithm>
 #include <cmath>
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
@@ -9,6 +8,8 @@
 #include <gonio/mapping/base/did_you_mean.h>
 #include <gonio/mapping/base/error.h>
 #include <gonio/mapping/charts/hemisphere.h>
+
+#include "tools/render/mesh/mesh.h"
 
 namespace gonio {
 namespace {
@@ -18,7 +19,8 @@ TriangleMesh tiles(int first, int step, int side) {
   for (int row = 0; row < side; ++row)
     for (int column = (first + row) % step; column < side; column += step) {
       const auto at = static_cast<std::uint32_t>(mesh.positions.size());
-      const float width = 2 / static_cast<float>(side), x = -1 + width * static_cast<float>(column), y = -1 + width * static_cast<float>(row);
+      const float width = 2 / static_cast<float>(side), x = -1 + width * static_cast<float>(column),
+                  y = -1 + width * static_cast<float>(row);
       for (const glm::vec2 corner : {glm::vec2(0, 0), glm::vec2(1, 0), glm::vec2(1, 1), glm::vec2(0, 1)})
         mesh.positions.emplace_back(x + width * corner.x, y + width * corner.y, 0);
       mesh.triangles.push_back({at, at + 1, at + 2});
@@ -48,10 +50,12 @@ TriangleMesh revolve(std::uint32_t rows, std::uint32_t columns, const Point& poi
       mesh.positions.push_back(point(k, 2 * pi<float> * static_cast<float>(j) / static_cast<float>(columns)));
   for (std::uint32_t k = 0; k < rows; ++k)
     for (std::uint32_t j = 0; j < columns; ++j) {
-      const std::uint32_t next = (j + 1) % columns, a = k * columns + j, b = k * columns + next, c = a + columns, d = b + columns;
+      const std::uint32_t next = (j + 1) % columns, a = k * columns + j, b = k * columns + next, c = a + columns,
+                          d = b + columns;
       for (const std::array<std::uint32_t, 3>& t : {std::array<std::uint32_t, 3>{a, c, d}, {a, d, b}}) {
         const glm::vec3 p = mesh.positions[t[0]];
-        if (glm::length(glm::cross(mesh.positions[t[1]] - p, mesh.positions[t[2]] - p)) > 0) mesh.triangles.push_back(t);
+        if (glm::length(glm::cross(mesh.positions[t[1]] - p, mesh.positions[t[2]] - p)) > 0)
+          mesh.triangles.push_back(t);
       }
     }
   return mesh;
@@ -77,8 +81,9 @@ float bump(float x) {
 }
 
 /// The foot, from the ball down to the ground: radius and height.
-constexpr float foot[][2] = {{0.335f, 0.375f}, {0.300f, 0.32f}, {0.295f, 0.27f}, {0.320f, 0.21f}, {0.390f, 0.155f}, {0.490f, 0.125f}, {0.575f, 0.115f},
-                             {0.625f, 0.100f}, {0.650f, 0.065f}, {0.650f, 0.03f}, {0.640f, 0.00f}, {0.60f, -0.01f}};
+constexpr float foot[][2] = {{0.335f, 0.375f}, {0.300f, 0.32f},  {0.295f, 0.27f},  {0.320f, 0.21f},
+                             {0.390f, 0.155f}, {0.490f, 0.125f}, {0.575f, 0.115f}, {0.625f, 0.100f},
+                             {0.650f, 0.065f}, {0.650f, 0.03f},  {0.640f, 0.00f},  {0.60f, -0.01f}};
 
 TriangleMesh preview() {
   constexpr float radius = 0.75f, height = 1.05f, ball_end = 2.68f;  // [rad] from the top
@@ -97,7 +102,8 @@ TriangleMesh preview() {
     const float t = static_cast<float>(at - i * rows_a_piece) / rows_a_piece;
     const auto value = [&](int c) {
       const float p0 = foot[i][c], p1 = foot[i + 1][c], p2 = foot[i + 2][c], p3 = foot[i + 3][c];
-      return 0.5f * (2 * p1 + (p2 - p0) * t + (2 * p0 - 5 * p1 + 4 * p2 - p3) * t * t + (3 * p1 - p0 - 3 * p2 + p3) * t * t * t);
+      return 0.5f * (2 * p1 + (p2 - p0) * t + (2 * p0 - 5 * p1 + 4 * p2 - p3) * t * t +
+                     (3 * p1 - p0 - 3 * p2 + p3) * t * t * t);
     };
     return glm::vec3(value(0) * std::cos(phi), value(0) * std::sin(phi), std::max(value(1), 0.0f));
   });
@@ -113,7 +119,8 @@ TriangleMesh make_shape(const std::string& name, const std::string& where) {
   if (name == "odd_tiles") return tiles(1, 2, 24);
   if (name == "sphere") return sphere();
   if (name == "preview") return preview();
-  throw Error(where + ": found '" + name + "', expected " + one_of({"square", "sphere", "even_tiles", "odd_tiles", "preview"}, name));
+  throw Error(where + ": found '" + name + "', expected " +
+              one_of({"square", "sphere", "even_tiles", "odd_tiles", "preview"}, name));
 }
 
 }  // namespace gonio

@@ -1,13 +1,16 @@
 #include "tools/render/mesh/triangulate.h"
 
 #include <cmath>
+
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
 namespace gonio {
 namespace {
 
-double cross(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
+double cross(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
 
 /// The polygon as seen along an axis, the one that it faces most, from where it turns counter-clockwise.
 std::vector<glm::dvec2> flatten(const TriangleMesh& mesh, const std::vector<std::uint32_t>& corners) {
@@ -37,7 +40,8 @@ bool add_polygon(TriangleMesh& mesh, std::vector<std::uint32_t> corners) {
   const auto next = [&](std::size_t k) { return (k + 1) % corners.size(); };
   const auto previous = [&](std::size_t k) { return (k + corners.size() - 1) % corners.size(); };
   bool convex = true;
-  for (std::size_t k = 0; k < corners.size(); ++k) convex = convex && cross(points[previous(k)], points[k], points[next(k)]) >= 0;
+  for (std::size_t k = 0; k < corners.size(); ++k)
+    convex = convex && cross(points[previous(k)], points[k], points[next(k)]) >= 0;
   if (!convex && corners.size() > max_corners) return false;
   std::size_t k = 0, tried = convex ? corners.size() : 0;
   while (corners.size() > 3 && tried < corners.size()) {
@@ -50,7 +54,8 @@ bool add_polygon(TriangleMesh& mesh, std::vector<std::uint32_t> corners) {
     k = previous(k);
     tried = 0;
   }
-  for (std::size_t j = 1; j + 1 < corners.size(); ++j) mesh.triangles.push_back({corners[0], corners[j], corners[j + 1]});
+  for (std::size_t j = 1; j + 1 < corners.size(); ++j)
+    mesh.triangles.push_back({corners[0], corners[j], corners[j + 1]});
   return true;
 }
 

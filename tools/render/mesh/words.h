@@ -38,6 +38,8 @@ std::optional<T> to_number(std::string_view word) {
 }
 
 /// A word for a message, in quotes, cut at 40 bytes.
-inline std::string quoted(std::string_view word) { return "'" + std::string(word.substr(0, 40)) + (word.size() > 40 ? "..." : "") + "'"; }
+inline std::string quoted(std::string_view word) {
+  return "'" + std::string(word.substr(0, 40)) + (word.size() > 40 ? "..." : "") + "'";
+}
 
 }  // namespace gonio

@@ -24,9 +24,11 @@ bool in_range(const nlohmann::json& value, double low, double high) {
 
 JsonFields::JsonFields(const nlohmann::json& object, std::string where, std::initializer_list<const char*> known)
     : object_(object), where_(std::move(where)) {
-  if (!object.is_object()) throw Error(where_ + (where_.back() == ':' ? " found " : ": found ") + shown(object) + ", expected an object");
+  if (!object.is_object())
+    throw Error(where_ + (where_.back() == ':' ? " found " : ": found ") + shown(object) + ", expected an object");
   for (const auto& [key, value] : object.items())
-    if (std::find(known.begin(), known.end(), key) == known.end()) fail(key, "an unknown member", one_of({known.begin(), known.end()}, key));
+    if (std::find(known.begin(), known.end(), key) == known.end())
+      fail(key, "an unknown member", one_of({known.begin(), known.end()}, key));
 }
 
 void JsonFields::fail(const std::string& key, const std::string& found, const std::string& expected) const {

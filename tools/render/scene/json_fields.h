@@ -1,9 +1,10 @@
 #pragma once
 
-#include <glm/vec3.hpp>
 #include <initializer_list>
-#include <nlohmann/json.hpp>
 #include <string>
+
+#include <glm/vec3.hpp>
+#include <nlohmann/json.hpp>
 
 namespace gonio {
 
@@ -24,7 +25,9 @@ class JsonFields {
 
   /// Each throws Error if the member is missing or of another kind.
   const nlohmann::json& at(const char* key) const;
-  JsonFields object(const char* key, std::initializer_list<const char*> known) const { return JsonFields(at(key), where(key), known); }
+  JsonFields object(const char* key, std::initializer_list<const char*> known) const {
+    return JsonFields(at(key), where(key), known);
+  }
   std::string text(const char* key) const;
   double number(const char* key, double low = -json_limit, double high = json_limit) const;
   bool boolean(const char* key) const;

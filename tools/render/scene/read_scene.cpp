@@ -1,18 +1,20 @@
 #include "tools/render/scene/read_scene.h"
 
 #include <cmath>
-#include <glm/common.hpp>
-#include <glm/geometric.hpp>
-#include <glm/gtc/matrix_transform.hpp>
 #include <map>
 #include <sstream>
 
-#include <gonio/mapping/base/bytes.h>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/fitting/model/parse_json.h>
+#include <gonio/mapping/base/bytes.h>
 #include <gonio/mapping/base/did_you_mean.h>
 #include <gonio/mapping/base/error.h>
 #include <gonio/mapping/light/exr/light_exr.h>
+
 #include "tools/cli/input.h"
 #include "tools/render/scene/json_fields.h"
 
@@ -33,7 +35,9 @@ std::string number(double x) {
 class SceneReader {
  public:
   SceneReader(const nlohmann::json& json, const std::string& where, fs::path folder, const CellPolicies& policies)
-      : fields_(json, where + ":", {"camera", "environment", "materials", "objects", "lights"}), folder_(std::move(folder)), policies_(policies) {}
+      : fields_(json, where + ":", {"camera", "environment", "materials", "objects", "lights"}),
+        folder_(std::move(folder)),
+        policies_(policies) {}
 
   Scene read() {
     if (fields_.has("camera")) camera();
@@ -59,11 +63,15 @@ class SceneReader {
     if (f.has("vertical_fov")) c.vertical_fov = degree * static_cast<float>(f.number("vertical_fov", 0.01, 179));
     if (f.has("resolution")) {
       const nlohmann::json& r = f.at("resolution");
-      const auto side = [](const nlohmann::json& n) { return n.is_number_integer() && n.get<double>() >= 1 && n.get<double>() <= 16384; };
-      if (!r.is_array() || r.size() != 2 || !side(r[0]) || !side(r[1])) f.fail("resolution", shown(r), "two whole numbers from 1 to 16384");
+      const auto side = [](const nlohmann::json& n) {
+        return n.is_number_integer() && n.get<double>() >= 1 && n.get<double>() <= 16384;
+      };
+      if (!r.is_array() || r.size() != 2 || !side(r[0]) || !side(r[1]))
+        f.fail("resolution", shown(r), "two whole numbers from 1 to 16384");
       c.width = r[0].get<int>(), c.height = r[1].get<int>();
     }
-    if (!(glm::length(glm::cross(c.target - c.position, c.up)) > 1e-6f * glm::length(c.target - c.position) * glm::length(c.up)))
+    if (!(glm::length(glm::cross(c.target - c.position, c.up)) >
+          1e-6f * glm::length(c.target - c.position) * glm::length(c.up)))
       f.fail("target", "a view along up, or of no length", "another target, or another up");
   }
 
@@ -132,7 +140,8 @@ class SceneReader {
       const auto method = parse_sampling_method(name);
       if (!method) f.fail("sampling", "'" + name + "'", one_of(sampling_method_names(), name));
       m.sampling = *method;
-      if (!MethodBuilder(m.table, m.model).available(m.sampling)) f.fail("sampling", name, "a method for a " + m.table->info().format + " file");
+      if (!MethodBuilder(m.table, m.model).available(m.sampling))
+        f.fail("sampling", name, "a method for a " + m.table->info().format + " file");
     }
   }
 
@@ -148,7 +157,8 @@ class SceneReader {
     if (f.has("scale") && scaled) {
       const glm::vec3 scale = f.triple_or_number("scale");
       for (int c = 0; c < 3; ++c)
-        if (std::abs(scale[c]) < static_cast<float>(smallest)) f.fail("scale", shown(f.at("scale")), "sizes from " + number(smallest));
+        if (std::abs(scale[c]) < static_cast<float>(smallest))
+          f.fail("scale", shown(f.at("scale")), "sizes from " + number(smallest));
       m = glm::scale(m, scale);
     }
     return m;
@@ -168,7 +178,8 @@ class SceneReader {
       for (const glm::vec3& p : mesh.positions) {
         for (int c = 0; c < 3; ++c)
           if (!(std::abs(static_cast<double>(p[c])) <= json_limit))
-            f.fail(f.has("shape") ? "shape" : "file", "a placed vertex with a coordinate of " + number(static_cast<double>(p[c])),
+            f.fail(f.has("shape") ? "shape" : "file",
+                   "a placed vertex with a coordinate of " + number(static_cast<double>(p[c])),
                    number(-json_limit) + " to " + number(json_limit));
         low = glm::min(low, p), high = glm::max(high, p);
       }
@@ -178,14 +189,16 @@ class SceneReader {
       if (found == index_.end()) {
         std::vector<std::string> names;
         for (const Material& m : scene_.materials) names.push_back(m.name);
-        f.fail("material", "'" + material + "'", names.empty() ? "a material, of which the scene has none" : one_of(names, material));
+        f.fail("material", "'" + material + "'",
+               names.empty() ? "a material, of which the scene has none" : one_of(names, material));
       }
       object.material = found->second;
       if (f.has("emission")) object.emission = f.triple_or_number("emission", 0, max_radiance);
       scene_.objects.push_back(std::move(object));
     }
     const double radius = static_cast<double>(glm::length(high - low)) / 2;
-    if (!(radius >= smallest)) fields_.fail("objects", "a scene of radius " + number(radius), "at least " + number(smallest));
+    if (!(radius >= smallest))
+      fields_.fail("objects", "a scene of radius " + number(radius), "at least " + number(smallest));
   }
 
   void lights() {
@@ -212,14 +225,17 @@ class SceneReader {
 
 }  // namespace
 
-Scene make_scene(const nlohmann::json& json, const std::string& where, const fs::path& folder, const CellPolicies& policies) {
+Scene make_scene(const nlohmann::json& json, const std::string& where, const fs::path& folder,
+                 const CellPolicies& policies) {
   return SceneReader(json, where, folder, policies).read();
 }
 
 Scene read_scene(const fs::path& path, const CellPolicies& policies) {
   const nlohmann::json json = parse_json(read_bytes(path), path.string());
   if (json.is_object() && json.value("format", nlohmann::json()) == "gonio scene")
-    throw Error(path.string() + ": found a manifest of gonio convert --scene (docs/scene.md), expected a scene of gonio render (docs/render.md)");
+    throw Error(path.string() +
+                ": found a manifest of gonio convert --scene (docs/scene.md), expected a scene of gonio render "
+                "(docs/render.md)");
   Scene scene = make_scene(json, path.string(), path.parent_path(), policies);
   scene.files.push_back(path);
   return scene;

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 
+#include <nlohmann/json.hpp>
+
 #include <gonio/brdf/formats/cell_policies.h>
+
 #include "tools/render/scene/scene.h"
 
 namespace gonio {
@@ -15,7 +17,8 @@ namespace gonio {
 Scene read_scene(const std::filesystem::path& path, const CellPolicies& policies = {});
 
 /// The same from JSON in memory. @param where name for messages
-Scene make_scene(const nlohmann::json& json, const std::string& where, const std::filesystem::path& folder, const CellPolicies& policies = {});
+Scene make_scene(const nlohmann::json& json, const std::string& where, const std::filesystem::path& folder,
+                 const CellPolicies& policies = {});
 
 /// The scene that shows one material, a file of any kind that a scene's material can name: the
 /// preview object on a tiled ground under a generated sky.

@@ -1,20 +1,22 @@
 #pragma once
 
-#include <glm/mat3x3.hpp>
-#include <glm/vec3.hpp>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+
 #include <gonio/brdf/table/table.h>
 #include <gonio/fitting/model/model.h>
 #include <gonio/mapping/light/emission.h>
-#include "tools/render/material/scatter.h"
+
 #include "tools/render/image/environment.h"
-#include "tools/render/mesh/mesh.h"
 #include "tools/render/material/sampling_methods.h"
+#include "tools/render/material/scatter.h"
+#include "tools/render/mesh/mesh.h"
 
 namespace gonio {
 
@@ -28,18 +30,18 @@ struct Camera {
 
 struct Material {
   std::string name;
-  std::shared_ptr<const Scatter> bsdf;  ///< of a measured table: null until build_materials()
-  bool two_sided = true;             ///< the back looks like the front; else it is black
-  std::shared_ptr<const BrdfTable> table;  ///< null for materials that have none
-  std::optional<LobeModel> model;          ///< that the table was made of
-  bool stack = false;                      ///< of a stack file, whose diagrams `bsdf` draws by
+  std::shared_ptr<const Scatter> bsdf;                  ///< of a measured table: null until build_materials()
+  bool two_sided = true;                                ///< the back looks like the front; else it is black
+  std::shared_ptr<const BrdfTable> table;               ///< null for materials that have none
+  std::optional<LobeModel> model;                       ///< that the table was made of
+  bool stack = false;                                   ///< of a stack file, whose diagrams `bsdf` draws by
   SamplingMethod sampling = SamplingMethod::automatic;  ///< of the table
 };
 
 struct Object {
   std::shared_ptr<const TriangleMesh> mesh;  ///< in the world
   std::size_t material = 0;
-  glm::vec3 emission{0};    ///< radiance of the outside
+  glm::vec3 emission{0};  ///< radiance of the outside
 };
 
 /// A luminaire, far enough to be a point.

@@ -1,14 +1,14 @@
 #include "tools/render/trace/film.h"
 
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <utility>
+
+#include <glm/common.hpp>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
-
-#include <algorithm>
-#include <cmath>
-#include <glm/common.hpp>
-#include <mutex>
-#include <utility>
 
 namespace gonio {
 namespace {
@@ -21,7 +21,10 @@ float tent(float u) { return u < 0.5f ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(2 -
 }  // namespace
 
 Film::Film(const Scene& scene, const RenderOptions& options, std::shared_ptr<const World> world)
-    : width_(scene.camera.width), height_(scene.camera.height), tracer_(scene, options.strategy, options.max_bounces, std::move(world)), options_(options),
+    : width_(scene.camera.width),
+      height_(scene.camera.height),
+      tracer_(scene, options.strategy, options.max_bounces, std::move(world)),
+      options_(options),
       pixels_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_)) {}
 
 void Film::add_samples(int count, const Progress& progress) {
@@ -32,12 +35,14 @@ void Film::add_samples(int count, const Progress& progress) {
     const int x0 = k % columns * tile, y0 = k / columns * tile;
     for (int y = y0; y < std::min(y0 + tile, height_); ++y)
       for (int x = x0; x < std::min(x0 + tile, width_); ++x) {
-        const std::size_t index = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+        const std::size_t index =
+            static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
         Pixel& pixel = pixels_[index];
         for (int s = samples_; s < samples_ + count; ++s) {
           PathSequence random(options_.seed, static_cast<std::uint32_t>(index), static_cast<std::uint32_t>(s));
           const glm::vec2 u = random.next();
-          const PathResult path = tracer_.trace(static_cast<float>(x) + 0.5f + tent(u.x), static_cast<float>(y) + 0.5f + tent(u.y), random);
+          const PathResult path =
+              tracer_.trace(static_cast<float>(x) + 0.5f + tent(u.x), static_cast<float>(y) + 0.5f + tent(u.y), random);
           const glm::dvec3 radiance(path.radiance);
           pixel.sum += radiance;
           pixel.sum_of_squares += radiance * radiance;

@@ -1,12 +1,13 @@
 #pragma once
 
-#include "tools/render/image/exr_image.h"
-#include "tools/render/trace/path_tracer.h"
-
 #include <cstdint>
 #include <functional>
-#include <glm/vec3.hpp>
 #include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "tools/render/image/exr_image.h"
+#include "tools/render/trace/path_tracer.h"
 
 namespace gonio {
 

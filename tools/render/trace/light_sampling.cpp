@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <limits>
+
+#include <glm/geometric.hpp>
 
 #include <gonio/mapping/charts/hemisphere.h>
 
@@ -19,7 +20,8 @@ double area_of(const TriangleMesh& mesh, std::size_t triangle) {
 
 }  // namespace
 
-LightSampling::LightSampling(const Scene& scene, const World& world) : scene_(scene), first_of_object_(scene.objects.size(), 0) {
+LightSampling::LightSampling(const Scene& scene, const World& world)
+    : scene_(scene), first_of_object_(scene.objects.size(), 0) {
   struct Light {
     std::size_t first, end;  // its sources
     double power;
@@ -35,7 +37,8 @@ LightSampling::LightSampling(const Scene& scene, const World& world) : scene_(sc
   if (scene.environment) {
     // The flux through a disk as wide as the scene.
     const double radius = static_cast<double>(world.radius());
-    add({{Source::Kind::environment, 0, 0, 0, static_cast<double>(scene.environment->power()) * pi<double> * radius * radius}});
+    add({{Source::Kind::environment, 0, 0, 0,
+          static_cast<double>(scene.environment->power()) * pi<double> * radius * radius}});
     has_environment_ = !sources_.empty();
   }
   for (std::size_t k = 0; k < scene.objects.size(); ++k) {
@@ -51,19 +54,23 @@ LightSampling::LightSampling(const Scene& scene, const World& world) : scene_(sc
     add(triangles);
   }
   for (std::size_t k = 0; k < scene.lights.size(); ++k)
-    add({{Source::Kind::goniometric, k, 0, 0, scene.lights[k].emission->flux() * static_cast<double>(luminance(scene.lights[k].scale))}});
+    add({{Source::Kind::goniometric, k, 0, 0,
+          scene.lights[k].emission->flux() * static_cast<double>(luminance(scene.lights[k].scale))}});
 
   double sum = 0, before = 0;
   for (const Light& light : lights) sum += light.power;
   cumulative_.push_back(0);
   for (const Light& light : lights)
     for (std::size_t k = light.first; k < light.end; ++k)
-      cumulative_.push_back(before += sources_[k].power * (0.5 / sum + 0.5 / (static_cast<double>(lights.size()) * light.power)));
+      cumulative_.push_back(before +=
+                            sources_[k].power * (0.5 / sum + 0.5 / (static_cast<double>(lights.size()) * light.power)));
 }
 
-std::optional<LightSampling::Sample> LightSampling::sample(const glm::vec3& point, float pick, glm::vec2 u) const noexcept {
+std::optional<LightSampling::Sample> LightSampling::sample(const glm::vec3& point, float pick,
+                                                           glm::vec2 u) const noexcept {
   if (sources_.empty()) return std::nullopt;
-  auto k = static_cast<std::size_t>(std::upper_bound(cumulative_.begin(), cumulative_.end(), static_cast<double>(pick)) - cumulative_.begin());
+  auto k = static_cast<std::size_t>(
+      std::upper_bound(cumulative_.begin(), cumulative_.end(), static_cast<double>(pick)) - cumulative_.begin());
   k = std::min(std::max<std::size_t>(k, 1), sources_.size()) - 1;
   const float chosen = probability(k);
   if (!(chosen > 0)) return std::nullopt;
@@ -71,7 +78,8 @@ std::optional<LightSampling::Sample> LightSampling::sample(const glm::vec3& poin
   if (source.kind == Source::Kind::environment) {
     const auto s = scene_.environment->sample(u);
     if (!s) return std::nullopt;
-    return Sample{s->direction, std::numeric_limits<float>::infinity(), scene_.environment->radiance(s->direction), chosen * s->pdf, false};
+    return Sample{s->direction, std::numeric_limits<float>::infinity(), scene_.environment->radiance(s->direction),
+                  chosen * s->pdf, false};
   }
   if (source.kind == Source::Kind::goniometric) {
     const GoniometricLight& light = scene_.lights[source.object];
@@ -93,7 +101,8 @@ std::optional<LightSampling::Sample> LightSampling::sample(const glm::vec3& poin
   const glm::vec3 direction = to / distance;
   const float cosine = -glm::dot(direction, normal);
   if (!(cosine > 0)) return std::nullopt;  // its dark side
-  return Sample{direction, distance, object.emission, chosen * distance * distance / (cosine * static_cast<float>(source.area)), false};
+  return Sample{direction, distance, object.emission,
+                chosen * distance * distance / (cosine * static_cast<float>(source.area)), false};
 }
 
 float LightSampling::pdf_environment(const glm::vec3& direction) const noexcept {
@@ -103,7 +112,8 @@ float LightSampling::pdf_environment(const glm::vec3& direction) const noexcept 
 float LightSampling::pdf_triangle(const Hit& hit, const glm::vec3& direction) const noexcept {
   const std::size_t k = first_of_object_[hit.object] + hit.triangle;
   const float cosine = -glm::dot(direction, hit.normal);
-  return cosine > 0 ? probability(k) * hit.distance * hit.distance / (cosine * static_cast<float>(sources_[k].area)) : 0;
+  return cosine > 0 ? probability(k) * hit.distance * hit.distance / (cosine * static_cast<float>(sources_[k].area))
+                    : 0;
 }
 
 }  // namespace gonio

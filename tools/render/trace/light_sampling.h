@@ -1,10 +1,10 @@
 #pragma once
 
-#include "tools/render/scene/scene.h"
-#include "tools/render/trace/world.h"
-
 #include <optional>
 #include <vector>
+
+#include "tools/render/scene/scene.h"
+#include "tools/render/trace/world.h"
 
 namespace gonio {
 
@@ -36,13 +36,15 @@ class LightSampling {
     std::size_t object, triangle;  // of a goniometric light: its index, in `object`
     double area, power;
   };
-  float probability(std::size_t source) const noexcept { return static_cast<float>(cumulative_[source + 1] - cumulative_[source]); }
+  float probability(std::size_t source) const noexcept {
+    return static_cast<float>(cumulative_[source + 1] - cumulative_[source]);
+  }
 
   const Scene& scene_;
   std::vector<Source> sources_;
-  std::vector<double> cumulative_;          // of sources 0 ... n
+  std::vector<double> cumulative_;            // of sources 0 ... n
   std::vector<std::size_t> first_of_object_;  // the source of an emitting object's triangle 0
-  bool has_environment_ = false;            // it is source 0
+  bool has_environment_ = false;              // it is source 0
 };
 
 }  // namespace gonio

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <utility>
+
+#include <glm/geometric.hpp>
 
 namespace gonio {
 namespace {
@@ -28,17 +29,23 @@ const char* to_string(Strategy strategy) noexcept {
 }
 
 PathTracer::PathTracer(const Scene& scene, Strategy strategy, int max_bounces, std::shared_ptr<const World> world)
-    : scene_(scene), world_(world ? std::move(world) : std::make_shared<const World>(scene)), lights_(scene, *world_), strategy_(strategy),
+    : scene_(scene),
+      world_(world ? std::move(world) : std::make_shared<const World>(scene)),
+      lights_(scene, *world_),
+      strategy_(strategy),
       max_bounces_(max_bounces) {
   const Camera& c = scene.camera;
-  const glm::vec3 ahead = glm::normalize(c.target - c.position), right = glm::normalize(glm::cross(ahead, c.up)), up = glm::cross(right, ahead);
+  const glm::vec3 ahead = glm::normalize(c.target - c.position), right = glm::normalize(glm::cross(ahead, c.up)),
+                  up = glm::cross(right, ahead);
   const float pixel = 2 * std::tan(0.5f * c.vertical_fov) / static_cast<float>(c.height);
   right_ = pixel * right;
   down_ = -pixel * up;
   corner_ = ahead - 0.5f * static_cast<float>(c.width) * right_ - 0.5f * static_cast<float>(c.height) * down_;
 }
 
-glm::vec3 PathTracer::camera_direction(float x, float y) const noexcept { return glm::normalize(corner_ + x * right_ + y * down_); }
+glm::vec3 PathTracer::camera_direction(float x, float y) const noexcept {
+  return glm::normalize(corner_ + x * right_ + y * down_);
+}
 
 std::optional<std::size_t> PathTracer::first_object(float x, float y) const noexcept {
   const auto hit = world_->intersect(scene_.camera.position, camera_direction(x, y));
@@ -59,13 +66,15 @@ PathResult PathTracer::trace(float x, float y, PathSequence& random) const noexc
     const std::optional<Hit> hit = world_->intersect(origin, direction);
     if (!hit) {
       if (scene_.environment)
-        result.radiance += throughput * scene_.environment->radiance(direction) * (bounce == 0 ? 1.0f : weight(lights_.pdf_environment(direction)));
+        result.radiance += throughput * scene_.environment->radiance(direction) *
+                           (bounce == 0 ? 1.0f : weight(lights_.pdf_environment(direction)));
       return result;
     }
     const Object& object = scene_.objects[hit->object];
     const bool outside = glm::dot(direction, hit->normal) < 0;
     if (outside && luminance(object.emission) > 0)
-      result.radiance += throughput * object.emission * (bounce == 0 ? 1.0f : weight(lights_.pdf_triangle(*hit, direction)));
+      result.radiance +=
+          throughput * object.emission * (bounce == 0 ? 1.0f : weight(lights_.pdf_triangle(*hit, direction)));
     const Material& material = scene_.materials[object.material];
     // Those of the side that is seen; the path goes on from just off it.
     const float flip = outside ? 1.0f : -1.0f;
@@ -97,8 +106,9 @@ PathResult PathTracer::trace(float x, float y, PathSequence& random) const noexc
   }
 }
 
-glm::vec3 PathTracer::direct_light(const glm::vec3& from, const glm::vec3& normal, const Scatter& bsdf, const glm::mat3& frame, const glm::vec3& wi,
-                                   float pick, glm::vec2 u) const noexcept {
+glm::vec3 PathTracer::direct_light(const glm::vec3& from, const glm::vec3& normal, const Scatter& bsdf,
+                                   const glm::mat3& frame, const glm::vec3& wi, float pick,
+                                   glm::vec2 u) const noexcept {
   const auto light = lights_.sample(from, pick, u);
   if (!light || !(light->pdf > 0)) return glm::vec3(0);
   if (strategy_ == Strategy::bsdf && !light->delta) return glm::vec3(0);

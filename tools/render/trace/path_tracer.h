@@ -1,7 +1,7 @@
 #pragma once
 
-#include "tools/render/trace/light_sampling.h"
 #include "tools/render/scene/scene.h"
+#include "tools/render/trace/light_sampling.h"
 #include "tools/render/trace/sobol.h"
 #include "tools/render/trace/world.h"
 
@@ -42,8 +42,8 @@ class PathTracer {
 
  private:
   glm::vec3 camera_direction(float x, float y) const noexcept;
-  glm::vec3 direct_light(const glm::vec3& from, const glm::vec3& normal, const Scatter& bsdf, const glm::mat3& frame, const glm::vec3& wi, float pick,
-                         glm::vec2 u) const noexcept;
+  glm::vec3 direct_light(const glm::vec3& from, const glm::vec3& normal, const Scatter& bsdf, const glm::mat3& frame,
+                         const glm::vec3& wi, float pick, glm::vec2 u) const noexcept;
 
   const Scene& scene_;
   std::shared_ptr<const World> world_;

@@ -1,9 +1,10 @@
 #include "tools/render/trace/sobol.h"
 
 #include <array>
-#include <boost/random/sobol.hpp>
 #include <cstddef>
 #include <vector>
+
+#include <boost/random/sobol.hpp>
 
 namespace gonio {
 namespace {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+
 #include <glm/vec2.hpp>
 
 namespace gonio {

@@ -9,9 +9,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <limits>
 
 #include <gonio/mapping/base/error.h>
 
@@ -67,8 +68,10 @@ World::World(const Scene& scene) : scene_(scene), embree_(std::make_unique<Embre
   for (const Object& object : scene.objects) {
     const TriangleMesh& mesh = *object.mesh;
     const RTCGeometry geometry = rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    void* positions = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), mesh.positions.size());
-    void* triangles = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(mesh.triangles[0]), mesh.triangles.size());
+    void* positions = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3),
+                                              mesh.positions.size());
+    void* triangles = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                              sizeof(mesh.triangles[0]), mesh.triangles.size());
     if (positions && triangles) {
       std::memcpy(positions, mesh.positions.data(), sizeof(glm::vec3) * mesh.positions.size());
       std::memcpy(triangles, mesh.triangles.data(), sizeof(mesh.triangles[0]) * mesh.triangles.size());
@@ -78,7 +81,8 @@ World::World(const Scene& scene) : scene_(scene), embree_(std::make_unique<Embre
     rtcReleaseGeometry(geometry);
   }
   rtcCommitScene(embree_->scene);
-  if (rtcGetDeviceError(embree_->device) != RTC_ERROR_NONE) throw Error("Embree: found no memory for the scene, expected enough");
+  if (rtcGetDeviceError(embree_->device) != RTC_ERROR_NONE)
+    throw Error("Embree: found no memory for the scene, expected enough");
   RTCBounds b;
   rtcGetSceneBounds(embree_->scene, &b);
   radius_ = 0.5f * glm::length(glm::vec3(b.upper_x - b.lower_x, b.upper_y - b.lower_y, b.upper_z - b.lower_z));
@@ -102,7 +106,8 @@ std::optional<Hit> World::intersect(const glm::vec3& origin, const glm::vec3& di
   hit.distance = query.ray.tfar;
   hit.position = a + u * ab + v * ac;  // more accurate than along the ray
   hit.step = step_off(a, b, c);
-  hit.normal = glm::vec3(glm::normalize(glm::cross(glm::dvec3(ab), glm::dvec3(ac))));  // a float's square of an area underflows early
+  hit.normal = glm::vec3(
+      glm::normalize(glm::cross(glm::dvec3(ab), glm::dvec3(ac))));  // a float's square of an area underflows early
   hit.shading_normal = hit.normal;
   if (!mesh.normals.empty()) {
     const glm::vec3 n = (1 - u - v) * mesh.normals[t[0]] + u * mesh.normals[t[1]] + v * mesh.normals[t[2]];

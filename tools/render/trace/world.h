@@ -1,9 +1,9 @@
 #pragma once
 
-#include "tools/render/scene/scene.h"
-
 #include <memory>
 #include <optional>
+
+#include "tools/render/scene/scene.h"
 
 namespace gonio {
 

@@ -59,7 +59,8 @@ nlohmann::json disk(const proof::Subject& subject, const glm::vec3& wi) {
   std::vector<double> density;
   for (int i = 0; i < sectors; ++i)
     for (int j = 0; j < rings; ++j) {
-      const Polar<float> at{(static_cast<float>(j) + 0.5f) / rings, pi<float> * (static_cast<float>(i) + 0.5f) / sectors};
+      const Polar<float> at{(static_cast<float>(j) + 0.5f) / rings,
+                            pi<float> * (static_cast<float>(i) + 0.5f) / sectors};
       density.push_back(transfer(subject, wi, polar_to_direction(at)));
     }
   const double peak = *std::max_element(density.begin(), density.end());
@@ -78,7 +79,8 @@ nlohmann::json weights(const proof::Subject& subject, const glm::vec3& wi) {
   proof::Random random(1);
   for (int k = 0; k < side * side; ++k) {
     const glm::vec2 jitter = random.pair();
-    const glm::vec2 u{(static_cast<float>(k / side) + jitter.x) / side, (static_cast<float>(k % side) + jitter.y) / side};
+    const glm::vec2 u{(static_cast<float>(k / side) + jitter.x) / side,
+                      (static_cast<float>(k % side) + jitter.y) / side};
     const auto s = subject.sample(wi, u);
     drawn.push_back(s ? static_cast<double>(luminance(s->weight)) : 0);
     sum += drawn.back();
@@ -94,7 +96,8 @@ nlohmann::json weights(const proof::Subject& subject, const glm::vec3& wi) {
     ++counts[static_cast<std::size_t>(std::clamp(bin, 0.0, bins - 1.0))];
   }
   nlohmann::json shares = nlohmann::json::array();
-  for (const int n : counts) n == 0 ? shares.push_back(0) : shares.push_back(rounded(static_cast<double>(n) / (side * side)));
+  for (const int n : counts)
+    n == 0 ? shares.push_back(0) : shares.push_back(rounded(static_cast<double>(n) / (side * side)));
   return {{"zero", rounded(static_cast<double>(zero) / (side * side))}, {"shares", std::move(shares)}};
 }
 
@@ -110,7 +113,8 @@ class Path {
     drawing_ = false;
     std::optional<Point> from = place(0.0f);
     if (from) draw(*from);
-    for (int k = 0; k < steps; ++k) from = add_step(place, static_cast<float>(k) / steps, from, static_cast<float>(k + 1) / steps, 0);
+    for (int k = 0; k < steps; ++k)
+      from = add_step(place, static_cast<float>(k) / steps, from, static_cast<float>(k + 1) / steps, 0);
   }
 
   std::string text() const { return text_.str(); }
@@ -169,8 +173,10 @@ std::string grid(const proof::Subject& subject, const glm::vec3& wi) {
     return Path::Point{std::lround(1000 * p.r * std::cos(p.phi)), -std::lround(1000 * p.r * std::sin(p.phi))};
   };
   Path path;
-  for (int line = 0; line <= lines; ++line) path.add_line([&](float t) { return place(static_cast<float>(line) / lines, t); });
-  for (int line = 0; line <= lines; ++line) path.add_line([&](float t) { return place(t, static_cast<float>(line) / lines); });
+  for (int line = 0; line <= lines; ++line)
+    path.add_line([&](float t) { return place(static_cast<float>(line) / lines, t); });
+  for (int line = 0; line <= lines; ++line)
+    path.add_line([&](float t) { return place(t, static_cast<float>(line) / lines); });
   return path.text();
 }
 
@@ -184,7 +190,8 @@ nlohmann::json table_curves(const proof::Subject& subject, double theta_i, doubl
   return {{"theta_i_deg", theta_i}, {"theta_o_deg", angles}, {"table", std::move(table)}, {"disk", disk(subject, wi)}};
 }
 
-nlohmann::json method_curves(const proof::Subject& subject, double theta_i, const nlohmann::json& theta_o_deg, bool with_grid) {
+nlohmann::json method_curves(const proof::Subject& subject, double theta_i, const nlohmann::json& theta_o_deg,
+                             bool with_grid) {
   const glm::vec3 wi = incident(theta_i);
   nlohmann::json pdf = nlohmann::json::array();
   for (const double t : theta_o_deg) pdf.push_back(rounded(subject.pdf(wi, in_plane(t))));

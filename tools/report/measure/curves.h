@@ -19,7 +19,8 @@ nlohmann::json table_curves(const proof::Subject& subject, double theta_i, doubl
 
 /// One method: `pdf` at the given directions of the plane of incidence [deg], `weights`, and if
 /// `with_grid`, `grid`.
-nlohmann::json method_curves(const proof::Subject& subject, double theta_i, const nlohmann::json& theta_o_deg, bool with_grid);
+nlohmann::json method_curves(const proof::Subject& subject, double theta_i, const nlohmann::json& theta_o_deg,
+                             bool with_grid);
 
 /// A fitted model: `model`, luminance of its f_r cos(theta_o) over the table's albedo at these directions.
 nlohmann::json model_curves(const LobeModel& model, double theta_i, const nlohmann::json& theta_o_deg, double albedo);

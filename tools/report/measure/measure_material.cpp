@@ -10,19 +10,19 @@
 #include <thread>
 #include <type_traits>
 
-#include "tools/report/measure/curves.h"
-#include "tools/measure/size_front.h"
-#include "tools/measure/timing.h"
-
-#include <gonio/brdf/proof/samplers/baseline.h>
-#include <gonio/brdf/exr/stack_file.h>
 #include <gonio/brdf/build/compact/fit_compact.h>
-#include <gonio/mapping/base/parallel.h>
+#include <gonio/brdf/exr/stack_file.h>
+#include <gonio/brdf/proof/samplers/baseline.h>
 #include <gonio/fitting/fit/fit_json.h>
 #include <gonio/fitting/sampling/lobe_sampler.h>
 #include <gonio/mapping/base/error.h>
+#include <gonio/mapping/base/parallel.h>
+
 #include "tools/cli/input.h"
+#include "tools/measure/size_front.h"
 #include "tools/measure/table_fits.h"
+#include "tools/measure/timing.h"
+#include "tools/report/measure/curves.h"
 
 namespace gonio {
 namespace {
@@ -66,7 +66,8 @@ struct AgainstTable {
 class Bench {
  public:
   template <class S>
-  void add(std::string id, std::string chart, nlohmann::json params, double build_seconds, std::shared_ptr<const S> sampler) {
+  void add(std::string id, std::string chart, nlohmann::json params, double build_seconds,
+           std::shared_ptr<const S> sampler) {
     const S& timed = *sampler;
     add(std::move(id), std::move(chart), std::move(params), build_seconds, timed, std::move(sampler));
   }
@@ -94,14 +95,17 @@ class Bench {
     constexpr std::size_t angles = std::size(report_angles), sections = std::size(curve_angles);
     // What belongs to the table is the same for all methods.
     glm::dvec3 albedo[angles];
-    parallel_for(angles, [&](std::size_t k) { albedo[k] = proof::albedo(subjects_.front(), radians(report_angles[k])); });
+    parallel_for(angles,
+                 [&](std::size_t k) { albedo[k] = proof::albedo(subjects_.front(), radians(report_angles[k])); });
     std::vector<nlohmann::json> sections_of_table(sections);
     for (std::size_t k = 0; k < sections; ++k) {
-      const auto at = std::find(std::begin(report_angles), std::end(report_angles), curve_angles[k]) - std::begin(report_angles);
+      const auto at =
+          std::find(std::begin(report_angles), std::end(report_angles), curve_angles[k]) - std::begin(report_angles);
       const double reflected = static_cast<double>(luminance(glm::vec3(albedo[at])));
       sections_of_table[k] = table_curves(subjects_.front(), curve_angles[k], reflected);
       for (nlohmann::json& fit : material.fits)
-        fit["curves"].push_back(model_curves(parse_model(fit["model"].get<std::string>()), curve_angles[k], sections_of_table[k]["theta_o_deg"], reflected));
+        fit["curves"].push_back(model_curves(parse_model(fit["model"].get<std::string>()), curve_angles[k],
+                                             sections_of_table[k]["theta_o_deg"], reflected));
     }
 
     std::vector<std::function<void()>> jobs;  // the longest first, or they would end alone
@@ -122,7 +126,8 @@ class Bench {
     });
     std::vector<std::vector<nlohmann::json>> curves(methods_.size(), std::vector<nlohmann::json>(sections));
     add_jobs(sections, [&](std::size_t m, std::size_t k) {
-      curves[m][k] = method_curves(subjects_[m], curve_angles[k], sections_of_table[k]["theta_o_deg"], has_grid(methods_[m].id));
+      curves[m][k] =
+          method_curves(subjects_[m], curve_angles[k], sections_of_table[k]["theta_o_deg"], has_grid(methods_[m].id));
     });
     std::vector<WeightRow> weights(methods_.size());
     add_jobs(angles, [&](std::size_t m, std::size_t k) {
@@ -157,7 +162,8 @@ class Bench {
 
   /// Grids are most of the page's bytes; those of some methods say little.
   static bool has_grid(const std::string& id) {
-    static const std::set<std::string> without{"uniform", "cosine", "nearest", "lobes1", "lobes2", "lobes3", "displacement_small"};
+    static const std::set<std::string> without{"uniform", "cosine", "nearest",           "lobes1",
+                                               "lobes2",  "lobes3", "displacement_small"};
     return without.count(id) == 0;
   }
 
@@ -168,9 +174,7 @@ class Bench {
 
 using Clock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 /// Adds the fits to the report and their samplers, lobes1 to lobes3, to the bench. Returns the
 /// bytes of the largest of them; 0 if there is nothing to fit, the table being black.
@@ -188,11 +192,15 @@ std::size_t add_lobes(const std::shared_ptr<const BrdfTable>& table, MaterialRep
     const LobeModel& model = stage.fit.model;
     const nlohmann::json written = nlohmann::json::parse(to_json(stage.fit, stage.errors));
     points.push_back(front_point(table, stage));
-    material.fits.push_back({{"model", describe(model)}, {"parameters", written["lobes"]}, {"fit", written["fit"]}, {"errors", written["errors"]}});
+    material.fits.push_back({{"model", describe(model)},
+                             {"parameters", written["lobes"]},
+                             {"fit", written["fit"]},
+                             {"errors", written["errors"]}});
     const nlohmann::json params = {{"model", describe(model)}, {"adaption", "shapes"}, {"fit_seconds", fits.seconds}};
     const auto start = Clock::now();
     const auto sampler = std::make_shared<const LobeSampler>(table, model);
-    bench.add<LobeSampler>("lobes" + std::to_string(model.specular_count()), "none", params, seconds_since(start), sampler);
+    bench.add<LobeSampler>("lobes" + std::to_string(model.specular_count()), "none", params, seconds_since(start),
+                           sampler);
     bytes = std::max(bytes, sampler->bytes());
   }
   return bytes;
@@ -217,8 +225,8 @@ void add_small_stack(const std::shared_ptr<const BrdfTable>& table, std::size_t 
   bench.add<Bsdf>("displacement_small", "outgoing", stack_params(kept), seconds_since(start), bsdf);
 }
 
-/// What make_bsdf() does by default, and the smallest BSDF with colours of its own of ten times the variance. Everything that was
-/// measured on the way becomes a point.
+/// What make_bsdf() does by default, and the smallest BSDF with colours of its own of ten times the variance.
+/// Everything that was measured on the way becomes a point.
 void add_compact(const std::shared_ptr<const BrdfTable>& table, Bench& bench, std::vector<FrontPoint>& points,
                  const Progress& progress) {
   const auto add_points = [&](const CompactChoice& choice, bool chosen) {
@@ -246,7 +254,8 @@ void add_compact(const std::shared_ptr<const BrdfTable>& table, Bench& bench, st
   params = stack_params(best.data);
   params["eval_error"] = best.quality.eval_error;
   params["albedo_error"] = best.quality.albedo_error;
-  bench.add<Bsdf, AgainstTable>("compact", to_string(best.data.diagrams.chart), params, seconds_since(start), compact->bsdf, compact);
+  bench.add<Bsdf, AgainstTable>("compact", to_string(best.data.diagrams.chart), params, seconds_since(start),
+                                compact->bsdf, compact);
   add_points(small, true);
 }
 
@@ -278,7 +287,8 @@ MaterialReport measure_material(const std::filesystem::path& path, const ReportO
                                 const Progress& progress) {
   if (is_exr(path)) return measure_stack_file(path, progress);
   const auto table = std::make_shared<const BrdfTable>(load_input(path, options.policies));
-  MaterialReport material{table->info().name, table->info().source, table->info().format, table->info().source_bytes, {}};
+  MaterialReport material{
+      table->info().name, table->info().source, table->info().format, table->info().source_bytes, {}};
 
   constexpr double building = 0.4;  // its share of the progress
   const auto start = std::chrono::steady_clock::now();
@@ -291,12 +301,15 @@ MaterialReport measure_material(const std::filesystem::path& path, const ReportO
   bench.add<CosineSampler>("cosine", "none", none, 0, std::make_shared<const CosineSampler>(table));
   if (std::holds_alternative<RglTable>(table->data()))
     bench.add<RglSampler>("rgl", "half", none, 0, std::make_shared<const RglSampler>(table));
-  for (const Interpolation interpolation : {Interpolation::nearest, Interpolation::mixture, Interpolation::displacement}) {
+  for (const Interpolation interpolation :
+       {Interpolation::nearest, Interpolation::mixture, Interpolation::displacement}) {
     const BsdfData data{grid, interpolation, Storage::float32, {}};
     if (interpolation == Interpolation::mixture)
-      bench.add<StackBsdf>("mixture", "outgoing", stack_params(data), build.count(), std::make_shared<const StackBsdf>(data, table));
+      bench.add<StackBsdf>("mixture", "outgoing", stack_params(data), build.count(),
+                           std::make_shared<const StackBsdf>(data, table));
     else
-      bench.add<Bsdf>(to_string(interpolation), "outgoing", stack_params(data), build.count(), std::make_shared<const Bsdf>(data, table));
+      bench.add<Bsdf>(to_string(interpolation), "outgoing", stack_params(data), build.count(),
+                      std::make_shared<const Bsdf>(data, table));
   }
   std::vector<FrontPoint> points;
   add_compact(table, bench, points, [&](double done) { progress(building * (1 + 2 * done) / 3); });

@@ -2,9 +2,9 @@
 
 #include <filesystem>
 
-#include "tools/report/measure/report_data.h"
-
 #include <gonio/brdf/build/stack/build_stack.h>
+
+#include "tools/report/measure/report_data.h"
 
 namespace gonio {
 

@@ -10,6 +10,7 @@
 #include <gonio/brdf/proof/coherence.h>
 #include <gonio/brdf/proof/measure.h>
 #include <gonio/mapping/light/emission.h>
+
 #include "tools/measure/timing.h"
 #include "tools/report/measure/weights_figure.h"
 
@@ -17,16 +18,16 @@ namespace gonio {
 
 /// One way of sampling one material, measured.
 struct MethodReport {
-  std::string id;          ///< one of those of docs/report.md
-  std::string chart;       ///< what the method's density is tabulated over; "none" if nothing is tabulated
-  nlohmann::json params;   ///< what made it
-  std::size_t bytes = 0;   ///< all memory that the sampler holds, the source table apart
+  std::string id;         ///< one of those of docs/report.md
+  std::string chart;      ///< what the method's density is tabulated over; "none" if nothing is tabulated
+  nlohmann::json params;  ///< what made it
+  std::size_t bytes = 0;  ///< all memory that the sampler holds, the source table apart
   double build_seconds = 0;
   CallTimes ns{};
   std::optional<CallTimes> ns_batch{};  ///< per look-up of a batch; none for methods that have no batch form
   std::vector<proof::Quality> angles;
-  proof::Coherence coherence;      ///< at coherence_angle
-  proof::Convergence convergence;  ///< at coherence_angle
+  proof::Coherence coherence;                       ///< at coherence_angle
+  proof::Convergence convergence;                   ///< at coherence_angle
   nlohmann::json curves = nlohmann::json::array();  ///< method_curves() at curve_angles
 };
 
@@ -34,12 +35,12 @@ struct MaterialReport {
   std::string name, source, format;
   std::uint64_t source_bytes = 0;
   std::vector<MethodReport> methods;
-  nlohmann::json fits = nlohmann::json::array();  ///< of one, two and three lobes; empty for a stack file
+  nlohmann::json fits = nlohmann::json::array();    ///< of one, two and three lobes; empty for a stack file
   nlohmann::json curves = nlohmann::json::array();  ///< table_curves() at curve_angles
-  nlohmann::json front = nlohmann::json::array();  ///< front_json() of stacks of several sizes and the fitted lobes
-  std::string sha256{};  ///< of the file
-  std::vector<WeightRow> weights{};     ///< of the continuous stacks, for the figure; not part of the JSON
-  std::optional<Stack<float>> stack{};  ///< of `displacement`, for the figure; not part of the JSON
+  nlohmann::json front = nlohmann::json::array();   ///< front_json() of stacks of several sizes and the fitted lobes
+  std::string sha256{};                             ///< of the file
+  std::vector<WeightRow> weights{};                 ///< of the continuous stacks, for the figure; not part of the JSON
+  std::optional<Stack<float>> stack{};              ///< of `displacement`, for the figure; not part of the JSON
 };
 
 /// The emission of one luminaire, sampled by every method.

@@ -26,6 +26,7 @@ struct WeightRow {
 
 /// Writes an SVG of the maps: white where the weight is the mean, blue below, red above.
 /// @throws Error if it cannot be written.
-void write_weights_figure(const std::filesystem::path& path, const std::string& title, const std::vector<WeightRow>& rows);
+void write_weights_figure(const std::filesystem::path& path, const std::string& title,
+                          const std::vector<WeightRow>& rows);
 
 }  // namespace gonio
