@@ -8,6 +8,7 @@ function(expect_quoted document example)
   endif()
 endfunction()
 
+expect_quoted(README.md first.cpp)
 expect_quoted(README.md path_tracer.cpp)
 expect_quoted(docs/integrate.md pbrt_bxdf.h)
 expect_quoted(docs/integrate.md mitsuba_bsdf.h)

@@ -3,11 +3,14 @@
 #include <cstdint>
 #include <string>
 
+// clang-format off
+#include <gonio/brdf/batch/kernels/targets.h>  // before Highway
+// clang-format on
+
 #include <gtest/gtest.h>
 #include <hwy/highway.h>
 
 #include <gonio/brdf/batch/batch_stack.h>
-#include <gonio/brdf/batch/kernels/targets.h>
 
 namespace gonio {
 

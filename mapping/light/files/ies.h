@@ -67,7 +67,7 @@ std::optional<std::string_view> tilt_value(std::string_view line);
 ///   number belongs, too few or too many numbers, counts out of range.
 IesFile read_ies(std::string_view text, const std::string& name, Problems& deviations);
 
-/// Parses the contents of the file that TILT=<name> refers to into the tilt fields of `file`.
+/// Parses the contents of the file that `TILT=<name>` refers to into the tilt fields of `file`.
 /// @throws Error as read_ies().
 void read_ies_tilt(std::string_view text, const std::string& name, IesFile& file);
 

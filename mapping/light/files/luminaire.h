@@ -42,7 +42,7 @@ struct LightOptions {
   bool clockwise = false;
   /// The C plane [rad] that the 0-degree plane of an IES file is. 0 leaves its labels as they are.
   double ies_zero = pi<double> / 2;
-  /// Tilt of the lamp [rad] for TILT=INCLUDE and TILT=<file>: the output is multiplied by the
+  /// Tilt of the lamp [rad] for TILT=INCLUDE and `TILT=<file>`: the output is multiplied by the
   /// factor there.
   double tilt = 0;
   std::size_t lamp_set = 0;  ///< of an EULUMDAT file with several
