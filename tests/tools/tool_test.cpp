@@ -184,7 +184,7 @@ TEST_F(ToolTest, UsageErrors) {
   expect_error("convert a.mbsdf b.exr --bytes 5stones", {"--bytes: found '5stones'"});
   expect_error("convert a.mbsdf b.exr --bytes 99999999999999999999", {"--bytes"});
   expect_error("convert a.mbsdf b.exr --tolerance 0", {"--tolerance"});
-  expect_error("convert a.mbsdf b.exr --tolerance nan", {"max_variance"});
+  expect_error("convert a.mbsdf b.exr --tolerance nan", {"--tolerance"});
   expect_error("convert a.mbsdf b.mbsdf --grid 0x9", {"--grid"});
   expect_error("convert a.mbsdf b.mbsdf --grid 99999x9", {"grid: found 99999 thetas"});
 }

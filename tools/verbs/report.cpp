@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <gonio/brdf/exr/stack_file.h>
+#include <gonio/brdf/proof/samplers/stack_bsdf.h>
 #include <gonio/mapping/base/error.h>
 #include <gonio/mapping/light/exr/light_exr.h>
 
@@ -61,7 +62,7 @@ std::vector<std::filesystem::path> usable_inputs(const Options& options, Failure
       if (is_light_file(input))
         load_any_light(input, {}, ignored);
       else if (is_exr(input))
-        load_bsdf(input);
+        StackBsdf(load_stack(input).bsdf);
       else
         load_input(input, options.report.policies);
     });
