@@ -9,7 +9,7 @@
 namespace gonio {
 
 /// A stack of diagrams as an OpenEXR file, readable by any viewer of multi-part images. The layout
-/// is described in docs/stack-file.md.
+/// is described in docs/formats/stack-file.md.
 struct StackFile {
   BsdfData bsdf;              ///< densities normalised; without colours f_r is that of the table
   std::string name;           ///< of the material

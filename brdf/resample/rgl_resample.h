@@ -39,7 +39,7 @@ struct RglSize {
 /// - colours: f_r cos(theta_o) 4 sigma / D (jacobian is true), fitted so that means over cells keep.
 /// - theta_i: every four degrees, to 89, and between where linear interpolation misses.
 ///
-/// docs/renderers.md has the errors. Deterministic; uses all cores.
+/// docs/guide/renderers.md has the errors. Deterministic; uses all cores.
 /// @throws Error for sizes out of range
 RglFile resample_as_rgl(const Reflectance& f_r, std::string description, const RglSize& size = {},
                         const Progress& progress = {});

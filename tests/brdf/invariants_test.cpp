@@ -65,7 +65,7 @@ InvariantOptions options_for(const Method& method) {
   return options;
 }
 
-// What is known to fail, where, and why; docs/proof.md lists the same. All of it is where nearly no draw falls.
+// What is known to fail, where, and why; docs/guide/proof.md lists the same. All of it is where nearly no draw falls.
 struct Known {
   enum Where { anywhere, half_chart, grazing_half_chart };  // grazing: theta_i > 1.5
   Where where;

@@ -20,7 +20,7 @@ namespace {
 
 using namespace test;
 
-// Of the errors, mean and worst over the angles. docs/renderers.md says where they come from.
+// Of the errors, mean and worst over the angles. docs/guide/renderers.md says where they come from.
 struct Bounds {
   double mean = 0.01, worst = 0.025;
 };

@@ -130,7 +130,7 @@ void write_bytes(const fs::path& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
-/// A stack file as another program would write it from docs/stack-file.md, open to changes.
+/// A stack file as another program would write it from docs/formats/stack-file.md, open to changes.
 struct RawPart {
   Imf::Header header;
   std::vector<std::string> channels;

@@ -127,7 +127,7 @@ TEST(Fit, RecoversConductors) {
     EXPECT_NEAR(found.color[0][c], lobe.color[0][c], 0.05 * lobe.color[0][c]);
     EXPECT_NEAR(found.color[1][c], lobe.color[1][c], 0.05 * lobe.color[1][c]);
   }
-  // The figures of docs/fit.md.
+  // The figures of docs/guide/fit.md.
   const auto expect_bound = [](Lobe metal, int channel, double cutoff, double eta, double k) {
     for (glm::dvec3& c : metal.color) c = glm::dvec3(c[channel]);
     const glm::dvec2 bound = conductor_bound(metal, cutoff * pi<double> / 180);

@@ -1,4 +1,4 @@
-// The adapters that docs/integrate.md shows, as the renderers would call them.
+// The adapters that docs/guide/integrate.md shows, as the renderers would call them.
 
 #include <memory>
 #include <random>

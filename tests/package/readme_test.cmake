@@ -10,5 +10,5 @@ endfunction()
 
 expect_quoted(README.md first.cpp)
 expect_quoted(README.md path_tracer.cpp)
-expect_quoted(docs/integrate.md pbrt_bxdf.h)
-expect_quoted(docs/integrate.md mitsuba_bsdf.h)
+expect_quoted(docs/guide/integrate.md pbrt_bxdf.h)
+expect_quoted(docs/guide/integrate.md mitsuba_bsdf.h)

@@ -72,7 +72,7 @@ TEST_F(RenderTool, MaterialsAndEnvironmentFromFiles) {
   }
 }
 
-// The comparison holds what docs/render.md says, and its page needs no other file.
+// The comparison holds what docs/guide/render.md says, and its page needs no other file.
 TEST_F(RenderTool, Compare) {
   ASSERT_EQ(
       run("--material grey.mbsdf --size 16x16 --seconds 0.05 --reference-seconds 0.2 --methods default,cosine -o c",
@@ -158,8 +158,9 @@ TEST_F(RenderTool, ErrorsAreOneLineAndLeaveNoFile) {
       {"s.json --material grey.mbsdf", "SCENE: found one and --material"},
       {"s.json", "s.json: objects: found []"},
       {"manifest.json",
-       "manifest.json: found a manifest of gonio convert --scene (docs/scene.md), expected a scene of gonio render "
-       "(docs/render.md)"},
+       "manifest.json: found a manifest of gonio convert --scene (docs/guide/scene.md), expected a scene of gonio "
+       "render "
+       "(docs/guide/render.md)"},
       {"--material none.bsdf", "gonio render: none.bsdf: no such file\n"},
       {"--material grey.mbsdf --samples 0", "--samples: found 0"},
       {"--material grey.mbsdf --sampling best", "--sampling: found 'best', expected one of default, cosine"},

@@ -88,9 +88,9 @@ TEST_F(SceneToolTest, NamesWhatIsWrongInAManifest) {
   expect(R"({"format": "gonio scene", "version": 1, "material": []})",
          "the file: found an unknown member 'material', expected one of format, version, materials; did you mean "
          "materials?");
-  expect(
-      R"({"materials": {}, "objects": []})",
-      "found a scene of gonio render (docs/render.md), expected a manifest of gonio convert --scene (docs/scene.md)");
+  expect(R"({"materials": {}, "objects": []})",
+         "found a scene of gonio render (docs/guide/render.md), expected a manifest of gonio convert --scene "
+         "(docs/guide/scene.md)");
   expect(manifest("[]"), "materials: found array, expected an array of at least one");
   expect(manifest("[7]"), "materials[0]: found number, expected an object");
   expect(material(R"("name": "b", "file": "a.mbsdf")"), "materials[1]: found none, expected a member 'share'");

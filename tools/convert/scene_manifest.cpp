@@ -84,8 +84,8 @@ std::vector<SceneMaterial> load_scene(const std::filesystem::path& path) {
   const json root = parse_json(read_bytes(path), path.string());
   if (root.is_object() && root.contains("objects") && !root.contains("format"))
     throw Error(path.string() +
-                ": found a scene of gonio render (docs/render.md), expected a manifest of gonio convert --scene "
-                "(docs/scene.md)");
+                ": found a scene of gonio render (docs/guide/render.md), expected a manifest of gonio convert --scene "
+                "(docs/guide/scene.md)");
   reader.check_members(root, "the file", {"format", "version", "materials"});
   if (reader.text(root, "the file", "format") != "gonio scene")
     reader.fail("format", shown(root["format"]), "\"gonio scene\"");

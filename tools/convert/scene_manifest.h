@@ -15,7 +15,7 @@ struct SceneMaterial {
   std::vector<double> incidence;
 };
 
-/// Reads a scene manifest (JSON, docs/scene.md): at least one material. Shares and histograms come out
+/// Reads a scene manifest (JSON, docs/guide/scene.md): at least one material. Shares and histograms come out
 /// normalised, paths relative to the folder of the manifest.
 /// @throws Error naming the file and the field for anything missing, out of range or unknown.
 std::vector<SceneMaterial> load_scene(const std::filesystem::path& path);

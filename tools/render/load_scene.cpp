@@ -27,7 +27,7 @@ Scene SceneChoice::load() const {
 }
 
 void add_scene_choice(CLI::App& verb, SceneChoice& choice) {
-  verb.add_option("SCENE", choice.scene, "Scene file (JSON; docs/render.md)");
+  verb.add_option("SCENE", choice.scene, "Scene file (JSON; docs/guide/render.md)");
   verb.add_option("--material", choice.material, "Table, stack file or model to show on the default scene");
   verb.add_option("--size", choice.size, "Pixels, as 512x512, instead of the scene's");
   add_cell_policies(verb, choice.policies);

@@ -11,7 +11,7 @@ namespace gonio {
 /// the tables, and their pictures, are told apart by it.
 void add_material(Report& report, MaterialReport material);
 
-/// The report with stable keys; see docs/tool.md.
+/// The report with stable keys; see docs/guide/tool.md.
 nlohmann::json to_json(const Report& report);
 
 /// Writes report.json, report.md, report.html and the figures of each material into `directory`, which is

@@ -11,7 +11,7 @@ namespace gonio {
 /// from k, per area of the surface (Dupuy et al. 2015, eq. 3; Smith's assumption).
 ///
 /// Every pixel is one facet: D times the integral of h over the pixel's solid angle (see
-/// orthographic_normal_integral()), horizon included. docs/ndf.md has the method and its errors: at
+/// orthographic_normal_integral()), horizon included. docs/guide/ndf.md has the method and its errors: at
 /// 512 x 512 within 1e-3 of the closed forms of GGX and Beckmann up to 85 degrees, for alpha from 0.02
 /// (five pixels).
 ///

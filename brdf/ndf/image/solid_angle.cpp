@@ -11,7 +11,7 @@ namespace {
 
 constexpr double rounding = 1.1102230246251565e-16;  // 2^-53
 
-// The four-corner difference of the closed form is off by at most this (docs/ndf.md).
+// The four-corner difference of the closed form is off by at most this (docs/guide/ndf.md).
 constexpr double closed_form_error = 48 * rounding;
 constexpr double closed_form_relative = 1e-13;
 

@@ -19,7 +19,7 @@ namespace gonio {
 ///
 ///   A(x, y) = x atan2(y, s) + y atan2(x, s) - atan2(x y, s),  s = sqrt(max(1 - x^2 - y^2, 0)),
 ///
-/// which with this s holds outside the circle as well. docs/ndf.md derives that, and the bound by
+/// which with this s holds outside the circle as well. docs/guide/ndf.md derives that, and the bound by
 /// which small rectangles, where the difference of A at four corners cancels, are integrated
 /// numerically instead.
 template <class T>

@@ -15,7 +15,7 @@ namespace gonio {
 ///
 /// The frame: nadir -z, C0 +x, C90 +y (C turns counter-clockwise seen from above). C0 is that of
 /// CIE and EULUMDAT, across the lamp axis. The 0-degree plane of IES files lies along the lamp
-/// axis: it is C90 here (see docs/lights.md, with a picture).
+/// axis: it is C90 here (see docs/guide/lights.md, with a picture).
 struct Luminaire {
   LightDiagram diagram;  ///< [cd]
   /// As the file states it, in this frame: the planes are not the file's labels.

@@ -9,7 +9,7 @@
 
 namespace gonio {
 
-/// What compare.json holds (docs/render.md), pictures apart. @param scene name of the scene or material
+/// What compare.json holds (docs/guide/render.md), pictures apart. @param scene name of the scene or material
 nlohmann::json to_json(const Comparison& comparison, const std::string& scene, const CompareOptions& options);
 
 /// Writes compare.json, compare.md, compare.html, and the pictures that they refer to, into a folder that exists.

@@ -234,8 +234,8 @@ Scene read_scene(const fs::path& path, const CellPolicies& policies) {
   const nlohmann::json json = parse_json(read_bytes(path), path.string());
   if (json.is_object() && json.value("format", nlohmann::json()) == "gonio scene")
     throw Error(path.string() +
-                ": found a manifest of gonio convert --scene (docs/scene.md), expected a scene of gonio render "
-                "(docs/render.md)");
+                ": found a manifest of gonio convert --scene (docs/guide/scene.md), expected a scene of gonio render "
+                "(docs/guide/render.md)");
   Scene scene = make_scene(json, path.string(), path.parent_path(), policies);
   scene.files.push_back(path);
   return scene;

@@ -11,7 +11,7 @@
 
 namespace gonio {
 
-/// Reads a scene as docs/render.md describes it, with all files that it names; their paths are
+/// Reads a scene as docs/guide/render.md describes it, with all files that it names; their paths are
 /// relative to the scene's folder. Samplers of tables are not built yet: see build_materials().
 /// @throws Error naming file and field for whatever is missing, unknown, out of range or unreadable.
 Scene read_scene(const std::filesystem::path& path, const CellPolicies& policies = {});

@@ -11,7 +11,7 @@ namespace gonio {
 inline constexpr double curve_angles[] = {10, 30, 50, 80};
 
 // What the page draws, as JSON with four digits, for wi at theta_i [deg] in [0, 90). Keys and units
-// are listed in docs/report.md. All are deterministic.
+// are listed in docs/guide/report.md. All are deterministic.
 
 /// The table itself: `theta_o_deg`, `table` and `disk`. @param f_r in 1/sr, as Subject has it.
 /// @param albedo luminance of the albedo at theta_i; of a black table all values are 0.

@@ -18,7 +18,7 @@ namespace gonio {
 
 /// One way of sampling one material, measured.
 struct MethodReport {
-  std::string id;         ///< one of those of docs/report.md
+  std::string id;         ///< one of those of docs/guide/report.md
   std::string chart;      ///< what the method's density is tabulated over; "none" if nothing is tabulated
   nlohmann::json params;  ///< what made it
   std::size_t bytes = 0;  ///< all memory that the sampler holds, the source table apart
