@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <gonio/brdf/build/compact/fit_compact.h>
+#include <gonio/brdf/build/stack/build_stack.h>
 #include <gonio/brdf/proof/edges.h>
 #include <gonio/brdf/proof/gallery.h>
 #include <gonio/brdf/proof/samplers/baseline.h>
@@ -89,6 +90,34 @@ TEST_P(MeasuredEdges, AreSound) {
   for (const double theta_i : {0.0, 2.0, 10.0, 30.0, 50.0, 70.0, 80.0, 85.0, 88.3}) angles.push_back(theta_i * degree);
   expect_all_sound(GetParam(), std::make_shared<const BrdfTable>(load_table(path)), angles);
 }
+/// Stacks for displacement: in half vectors up to four times the interior's weight.
+TEST_P(MeasuredEdges, AreSoundBetweenDiagrams) {
+  const char* data = std::getenv("GONIO_TEST_DATA");
+  if (!data) GTEST_SKIP() << "GONIO_TEST_DATA is not set";
+  const std::filesystem::path path = std::filesystem::path(data) / GetParam();
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path.string() << " is not there";
+  const auto from = std::make_shared<const BrdfTable>(load_table(path));
+  for (const Chart chart : charts) {
+    BsdfOptions options;
+    options.interpolation = Interpolation::displacement;
+    options.chart = chart;
+    const StackGrid grid = build_stack(*from, options);
+    for (const Interpolation interpolation : {Interpolation::displacement, Interpolation::nearest}) {
+      const Bsdf bsdf({grid, interpolation, Storage::float32, {}}, from);
+      for (const double theta_i : {0.0, 2.0, 10.0, 30.0, 50.0, 70.0, 80.0, 85.0}) {
+        const EdgeScan scan = scan_edges(subject_of(bsdf), theta_i * degree);
+        const auto where = [&](const std::string& uv) {
+          return GetParam() + std::string(", ") + to_string(interpolation) + ", " + to_string(chart) + ", " +
+                 std::to_string(theta_i) + " degrees, " + uv;
+        };
+        EXPECT_EQ(scan.bad, 0u) << where(scan.where_bad);
+        EXPECT_LE(scan.pdf_factor, 1.1) << where(scan.where_pdf);
+        EXPECT_LE(scan.largest_weight, chart == Chart::half ? 4 : 2) << where(scan.where_weight);
+      }
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Slow, MeasuredEdges,
                          testing::Values("rgl/paper_white_rgb.bsdf", "rgl/satin_rosaline_rgb.bsdf",
                                          "rgl/cc_iris_purple_gem_rgb.bsdf", "rgl/cg_sunflower_rgb.bsdf",
