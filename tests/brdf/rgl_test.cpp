@@ -259,6 +259,20 @@ TEST(Rgl, CutOffFilesSayHowLongTheyShouldBe) {
   }
 }
 
+// Whether fields lie within the file is known once all are. What ends the list early leaves none of them.
+TEST(Rgl, FieldsBeyondTheEndAreNotReadWhereTheListIsBroken) {
+  TensorBuilder file = make_rgl();
+  file.add("broken", std::vector<std::uint64_t>(99, 1), {0.0f});
+  std::string bytes = file.bytes();
+  const std::uint64_t far = std::uint64_t{1} << 40;
+  std::memcpy(bytes.data() + bytes.find("ndf") + 3 + 2 + 1, &far,
+              sizeof(far));  // the offset, after dimensions and type
+  std::vector<Problem> problems;
+  parse_rgl(bytes, problems);
+  ASSERT_FALSE(problems.empty());
+  EXPECT_THAT(to_string(problems[0]), HasSubstr("99 dimensions"));
+}
+
 TEST(Rgl, OneInfinityHidesNoAnisotropy) {
   TensorBuilder file = make_rgl({1, 1, 1}, true, 2);
   set(file, "luminance", 0, std::numeric_limits<float>::infinity());

@@ -69,6 +69,7 @@ TensorFile::TensorFile(std::string bytes, std::vector<Problem>& problems) : byte
     if (complete && n_dimensions > max_dimensions) {
       problems.push_back({which + " (" + field.name + ")", std::to_string(n_dimensions) + " dimensions",
                           "at most " + std::to_string(max_dimensions), true});
+      fields_.clear();  // whether they lie within the file is not known yet
       return;
     }
     if (complete) {
