@@ -14,7 +14,7 @@ enum class CellPolicy {
 /// The policy for each kind of bad cell. NaN and infinite cells are never kept.
 struct CellPolicies {
   CellPolicy negative = CellPolicy::zero;   ///< small negative values: measurement noise about 0
-  CellPolicy nonfinite = CellPolicy::fill;  ///< NaN, +-Inf
+  CellPolicy nonfinite = CellPolicy::fill;  ///< NaN, +-Inf, and beyond 1e30
   CellPolicy missing = CellPolicy::fill;    ///< a format's own mark for "not measured" (MERL: < 0)
 };
 

@@ -49,9 +49,10 @@ void fill_along(std::vector<glm::vec3>& cells, std::vector<char>& filled, const 
 }  // namespace
 
 CellKind kind_of(const glm::vec3& cell) noexcept {
-  if (!std::isfinite(cell.r) || !std::isfinite(cell.g) || !std::isfinite(cell.b)) {
-    return CellKind::nonfinite;
-  }
+  // No BRDF comes near the bound; differences and products of what is below stay finite.
+  constexpr float largest = 1e30f;
+  const auto finite = [](float x) { return std::abs(x) <= largest; };  // not of NaN
+  if (!finite(cell.r) || !finite(cell.g) || !finite(cell.b)) return CellKind::nonfinite;
   return cell.r < 0.0f || cell.g < 0.0f || cell.b < 0.0f ? CellKind::negative : CellKind::valid;
 }
 

@@ -16,7 +16,7 @@ namespace gonio {
 enum class CellKind : std::uint8_t {
   valid,
   negative,   ///< finite, with a channel below 0
-  nonfinite,  ///< with a NaN or infinite channel
+  nonfinite,  ///< with a channel that is NaN, infinite or beyond 1e30
   missing,    ///< marked as not measured
   outside     ///< stands for no pair of directions above the horizon; always filled, never counted
 };

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <gonio/brdf/formats/repair.h>
 #include <gonio/brdf/formats/rgl/rgl.h>
 #include <gonio/mapping/base/error.h>
 
@@ -271,6 +272,29 @@ TEST(Rgl, FieldsBeyondTheEndAreNotReadWhereTheListIsBroken) {
   parse_rgl(bytes, problems);
   ASSERT_FALSE(problems.empty());
   EXPECT_THAT(to_string(problems[0]), HasSubstr("99 dimensions"));
+}
+
+// Half way between two cells of opposite signs: their difference is no float.
+TEST(Rgl, CellsBeyondAnyBrdfAreNotFinite) {
+  EXPECT_EQ(kind_of({1e30f, 0, 0}), CellKind::valid);
+  EXPECT_EQ(kind_of({0, 1.1e30f, 0}), CellKind::nonfinite);
+  EXPECT_EQ(kind_of({0, 0, -1.1e30f}), CellKind::nonfinite);
+  TensorBuilder file = make_rgl();
+  std::vector<float> rgb(54, 3e38f);
+  for (std::size_t k = 0; k < rgb.size(); k += 2) rgb[k] = -3e38f;
+  rgb[6] = rgb[13] = rgb[20] = 0.5f;
+  file["rgb"].data.assign(reinterpret_cast<const char*>(rgb.data()), rgb.size() * sizeof(float));
+  std::vector<Problem> problems;
+  const RglFile parsed = parse_rgl(file.bytes(), problems);
+  try {
+    const RglTable table(parsed, {});
+    for (const float theta : {0.1f, 0.9f, 1.5f}) {
+      const glm::vec3 f = table.eval({std::sin(theta), 0, std::cos(theta)}, {0.3f, 0.4f, 0.866f});
+      for (int c = 0; c < 3; ++c) EXPECT_GE(f[c], 0) << theta;  // not of NaN
+    }
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("valid"));
+  }
 }
 
 TEST(Rgl, OneInfinityHidesNoAnisotropy) {
