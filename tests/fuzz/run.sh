@@ -20,5 +20,5 @@ build-fuzz/tests/fuzz/fuzz_corpus build-fuzz/corpus
 for name in "${names[@]}"; do
   echo "fuzz: $name"
   build-fuzz/tests/fuzz/fuzz_$name -max_total_time="$seconds" -timeout=20 -rss_limit_mb=3000 -max_len=65536 \
-    -error_exitcode=1 -print_final_stats=1 -verbosity=0 -artifact_prefix=build-fuzz/findings/$name- build-fuzz/corpus/$name
+    -seed=1 -error_exitcode=1 -print_final_stats=1 -verbosity=0 -artifact_prefix=build-fuzz/findings/$name- build-fuzz/corpus/$name
 done
