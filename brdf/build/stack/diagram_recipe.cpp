@@ -37,8 +37,10 @@ DiagramGrid Recipe::diagram(double theta_i) const {
   const DiskDensity cosine = cosine_density(chart_, theta_i);
   DiagramGrid grid = fitted(density_at(theta_i));
   if (std::all_of(grid.density.begin(), grid.density.end(), [](double d) { return d == 0; })) return fitted(cosine);
-  if (can_be_raised(theta_i)) raise(theta_i, 1, grid);
-  grid = Diagram<double>(grid).grid();
+  if (can_be_raised(theta_i))
+    raise(theta_i, 1, grid);
+  else
+    grid = Diagram<double>(grid).grid();
   for (std::size_t i = 0; i < grid.phi.size(); ++i)
     for (std::size_t j = 0; j < grid.r.size(); ++j)
       grid.at(i, j) = (1 - cosine_share) * grid.at(i, j) + cosine_share * cosine({grid.r[j], grid.phi[i]});

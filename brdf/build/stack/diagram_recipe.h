@@ -32,8 +32,9 @@ class Recipe {
   /// next to no solid angle, so that what is raised there is a spike that directions in float do not hold.
   bool can_be_raised(double theta_i) const;
 
-  /// Raises a normalised diagram next to the horizon to the table's density at an incident angle (raise_tail()), where
-  /// `mean` is its mass.
+  /// Raises a diagram next to the horizon to the table's density at an incident angle divided by `mean` (raise_tail()),
+  /// then normalises it. `mean` puts both in one unit: 1 for a diagram that is not yet normalised, otherwise the mass
+  /// of that density.
   void raise(double theta_i, double mean, DiagramGrid& grid) const;
 
   Chart chart() const { return chart_; }

@@ -160,7 +160,6 @@ class Growth {
         if (interval < intervals.size() && means[interval] > 0)
           recipe_.raise((intervals[interval]->first + std::next(intervals[interval])->first) / 2, means[interval],
                         own.grid);
-      own.diagram = Diagram<double>(own.grid);
     });
   }
 
