@@ -70,10 +70,9 @@ void add_stack_request(CLI::App& verb, StackRequest& request) {
   verb.add_option_function<std::string>(
           "--chart",
           [&request](const std::string& text) {
-            if (text == "auto") return;
-            for (const Chart chart : charts) {
-              if (text == to_string(chart)) request.charts = {chart};
-            }
+            request.chart.reset();  // "auto"
+            for (const Chart chart : charts)
+              if (text == to_string(chart)) request.chart = chart;
           },
           "What diagrams tabulate: outgoing directions, half vectors, or what measures better")
       ->check(known_word({"outgoing", "half", "auto"}))

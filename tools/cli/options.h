@@ -25,12 +25,12 @@ const char* to_string(CellPolicy policy) noexcept;
 /// How a table becomes a stack file: as small as a variance allows, as good as a number of bytes allows, or of
 /// sizes given by hand.
 struct StackRequest {
-  std::vector<Chart> charts{Chart::half, Chart::outgoing};  ///< of --chart: one, or both for `auto`
-  std::optional<double> max_variance;                       ///< of --max-variance
-  std::optional<std::size_t> budget;                        ///< of --budget
-  std::string front;                                        ///< of --front
-  std::vector<std::string> comments;                        ///< of --comment, a line each
-  std::optional<Interpolation> interpolation;               ///< of --interpolation, by hand
+  std::optional<Chart> chart;                  ///< of --chart; none: `auto`
+  std::optional<double> max_variance;          ///< of --max-variance
+  std::optional<std::size_t> budget;           ///< of --budget
+  std::string front;                           ///< of --front
+  std::vector<std::string> comments;           ///< of --comment, a line each
+  std::optional<Interpolation> interpolation;  ///< of --interpolation, by hand
   BsdfOptions by_hand;
 };
 

@@ -47,7 +47,7 @@ void by_hand(const std::filesystem::path& in, const std::filesystem::path& out, 
              const CellPolicies& policies) {
   const BrdfTable table = load_input(in, policies);
   BsdfOptions options = request.by_hand;
-  if (request.charts.size() == 1) options.chart = request.charts.front();
+  options.chart = request.chart;
   options.interpolation = request.interpolation.value_or(Interpolation::displacement);
   StackFile file = named(table, in,
                          "sizes by hand, errors not measured: at most " + std::to_string(options.meridians) +
@@ -118,7 +118,7 @@ std::string asked_for(const BsdfOptions& options, const StackRequest& request) {
   std::string text = options.max_variance ? "--max-variance " + number(*options.max_variance)
                                           : "--budget " + std::to_string(options.budget);
   if (options.max_variance && request.budget) text += " --budget " + std::to_string(options.budget);
-  if (request.charts.size() == 1) text += std::string(" --chart ") + to_string(request.charts.front());
+  if (request.chart) text += std::string(" --chart ") + to_string(*request.chart);
   return text;
 }
 
@@ -155,7 +155,7 @@ void sized(const std::filesystem::path& in, const std::filesystem::path& out, co
   BsdfOptions options;
   if (request.budget) options.budget = *request.budget, options.max_variance.reset();
   if (request.max_variance) options.max_variance = request.max_variance;
-  if (request.charts.size() == 1) options.chart = request.charts.front();
+  options.chart = request.chart;
 
   std::vector<FrontPoint> points;
   TableFits fits;
