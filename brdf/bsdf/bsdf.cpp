@@ -4,14 +4,13 @@
 #include <gonio/brdf/bsdf/bsdf.h>
 #include <gonio/brdf/bsdf/material_hints.h>
 #include <gonio/brdf/table/table.h>
-#include <gonio/mapping/base/error.h>
 
 namespace gonio {
 
 struct Bsdf::State {
   State(const BsdfData& data, std::shared_ptr<const BrdfTable> from)
       : layout(sampled_stack(data)),
-        colour(from ? Colour() : data.colour, layout),
+        colour(sampled_colour(data, from != nullptr), layout),
         table(std::move(from)),
         storage(data.storage) {}
 
@@ -41,10 +40,8 @@ glm::vec3 get_at(ConstArrays3 a, std::size_t k) noexcept { return {a.x[k], a.y[k
 
 }  // namespace
 
-Bsdf::Bsdf(const BsdfData& data, std::shared_ptr<const BrdfTable> table) {
-  if (!table && data.colour.empty()) throw Error("BSDF: f_r: found neither a table nor a colour, expected one of them");
-  state_ = std::make_shared<const State>(data, std::move(table));  // which draws
-}
+Bsdf::Bsdf(const BsdfData& data, std::shared_ptr<const BrdfTable> table)
+    : state_(std::make_shared<const State>(data, std::move(table))) {}
 
 std::optional<BsdfSample> Bsdf::sample(const glm::vec3& wi, const glm::vec2& u) const noexcept {
   BsdfSample s;

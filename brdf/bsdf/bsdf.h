@@ -49,8 +49,7 @@ class Bsdf {
  public:
   /// With the table's f_r, or without a table with that of data.colour. Takes milliseconds.
   /// @throws Error for diagrams that cannot be sampled (see Stack), for Interpolation::mixture, for stacks of 2^29
-  /// values or
-  ///   more, and where there is neither a table nor a colour.
+  /// values or more, and where there is neither a table nor a colour.
   explicit Bsdf(const BsdfData& data, std::shared_ptr<const BrdfTable> table = nullptr);
 
   /// Draws wo for `wi` from two uniform numbers in [0, 1). Empty for wi.z <= 0, and for a draw that falls on a
@@ -71,9 +70,8 @@ class Bsdf {
   void eval_n(std::size_t count, ConstArrays3 wi, ConstArrays3 wo, Arrays3 f_r) const noexcept;
 
   /// Directional albedo per RGB channel, the integral of f_r cos(theta_o), at an incident angle [rad]: for denoisers,
-  /// light selection and Russian roulette. Within about 1 % of that of f_r; linear between angles 2 degrees apart and
-  /// constant beyond
-  /// 88. 0 from pi/2 on.
+  /// light selection and Russian roulette. Within about 1 % of that of f_r; linear between angles 2 degrees apart,
+  /// constant beyond 88 degrees, and 0 from pi/2 on.
   glm::vec3 albedo(float theta_i) const noexcept;
 
   /// An equivalent GGX alpha in [0, 1], for path guiding and regularisation: tan(theta_h) that half of what is

@@ -14,4 +14,10 @@ Stack<float> sampled_stack(const BsdfData& data) {
   return Stack<float>(PackedStack(data.diagrams).grid(), Interpolation::blend);
 }
 
+Colour sampled_colour(const BsdfData& data, bool has_table) {
+  if (has_table) return {};
+  if (data.colour.empty()) throw Error("BSDF: f_r: found neither a table nor a colour, expected one of them");
+  return data.colour;
+}
+
 }  // namespace gonio

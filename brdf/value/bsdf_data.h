@@ -26,4 +26,8 @@ struct BsdfData {
 /// @throws Error as Stack and PackedStack do, and for packed16 with another interpolation than blend.
 Stack<float> sampled_stack(const BsdfData& data);
 
+/// The colours that f_r is computed from: those of `data`, or none where a table gives f_r.
+/// @throws Error where there is neither a table nor a colour.
+Colour sampled_colour(const BsdfData& data, bool has_table);
+
 }  // namespace gonio

@@ -3,15 +3,11 @@
 
 #include <gonio/brdf/proof/samplers/stack_bsdf.h>
 #include <gonio/brdf/value/frame.h>
-#include <gonio/mapping/base/error.h>
 
 namespace gonio {
 
 StackBsdf::StackBsdf(const BsdfData& data, std::shared_ptr<const BrdfTable> table)
-    : stack_(sampled_stack(data)), colour_(table ? Colour() : data.colour), table_(std::move(table)) {
-  if (!table_ && colour_.empty())
-    throw Error("stack BSDF: f_r: found neither a table nor a colour, expected one of them");
-}
+    : stack_(sampled_stack(data)), colour_(sampled_colour(data, table != nullptr)), table_(std::move(table)) {}
 
 std::optional<BsdfSample> StackBsdf::sample(const glm::vec3& wi, const glm::vec2& u) const noexcept {
   if (!(is_above(wi) && std::isfinite(u.x + u.y))) return std::nullopt;

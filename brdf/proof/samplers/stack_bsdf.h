@@ -19,7 +19,7 @@ namespace gonio {
 /// locks.
 class StackBsdf {
  public:
-  /// @throws Error as sampled_stack() does, and where there is neither a table nor a colour.
+  /// @throws Error as sampled_stack() and sampled_colour() do.
   explicit StackBsdf(const BsdfData& data, std::shared_ptr<const BrdfTable> table = nullptr);
 
   std::optional<BsdfSample> sample(const glm::vec3& wi, const glm::vec2& u) const noexcept;
