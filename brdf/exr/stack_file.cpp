@@ -16,8 +16,6 @@
 #include <ImfPartType.h>
 #include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
-#include <ImfTestFile.h>
-#include <ImfVersion.h>
 
 #include <gonio/brdf/exr/check_attributes.h>
 #include <gonio/brdf/exr/stack_file.h>
@@ -256,13 +254,13 @@ StackFile load_stack(const std::filesystem::path& path) {
   }
 }
 
-bool is_exr(const std::filesystem::path& path) {
-  const std::string magic = read_bytes(path, 4);
-  return magic.size() == 4 && Imf::isImfMagic(magic.data());
-}
+bool is_exr(const std::filesystem::path& path) { return begins_as_exr(read_bytes(path, 4)); }
 
 Bsdf load_bsdf(const std::filesystem::path& path, std::shared_ptr<const BrdfTable> table) {
-  const StackFile file = load_stack(path);
+  return to_bsdf(load_stack(path), path, std::move(table));
+}
+
+Bsdf to_bsdf(const StackFile& file, const std::filesystem::path& path, std::shared_ptr<const BrdfTable> table) {
   if (file.bsdf.colour.empty() && !table)
     fail(path.string(), "part colour", "none", "one (a self-contained stack), or a table");
   return Bsdf(file.bsdf, std::move(table));

@@ -36,4 +36,8 @@ bool is_exr(const std::filesystem::path& path);
 /// @throws Error as load_stack() and Bsdf do, and for a file without colours where there is no table.
 Bsdf load_bsdf(const std::filesystem::path& path, std::shared_ptr<const BrdfTable> table = nullptr);
 
+/// The same for a file that load_stack() has read from `path`, which messages name.
+Bsdf to_bsdf(const StackFile& file, const std::filesystem::path& path,
+             std::shared_ptr<const BrdfTable> table = nullptr);
+
 }  // namespace gonio

@@ -32,7 +32,7 @@ bool resembles_merl(const std::string& head, std::uintmax_t size) {
 
 // With a mark of the byte order, or with a 0 as every second byte.
 bool is_utf16(const std::string& head) {
-  if (starts_with(head, "\xff\xfe") || starts_with(head, "\xfe\xff")) return true;
+  if (begins_as_utf16(head)) return true;
   if (head.size() < 8) return false;
   for (std::size_t i = 0; i < 8; ++i)
     if ((head[i] == '\0') == (head[i ^ 1] == '\0')) return false;
@@ -41,7 +41,7 @@ bool is_utf16(const std::string& head) {
 
 // The Latin letters of UTF-16.
 std::string without_zeros(const std::string& head) {
-  std::string text = starts_with(head, "\xff\xfe") || starts_with(head, "\xfe\xff") ? head.substr(2) : head;
+  std::string text = begins_as_utf16(head) ? head.substr(2) : head;
   text.erase(std::remove(text.begin(), text.end(), '\0'), text.end());
   return text;
 }
@@ -80,7 +80,7 @@ std::string luminaire_kind(const std::string& head) {
 
 std::string describe(const std::string& head) {
   if (head.empty()) return "an empty file";
-  if (starts_with(head, std::string("\x76\x2f\x31\x01", 4))) return "an OpenEXR file (gonio info takes stack files)";
+  if (begins_as_exr(head)) return "an OpenEXR file (gonio info takes stack files)";
   const bool wide = is_utf16(head);
   if (const std::string kind = luminaire_kind(wide ? without_zeros(head) : head); !kind.empty())
     return "a luminaire, " + kind + (wide ? " in UTF-16" : "") + " (gonio light info takes it)";

@@ -2,6 +2,7 @@
 #include <vector>
 
 #include <gonio/fitting/model/parse_json.h>
+#include <gonio/mapping/base/bytes.h>
 #include <gonio/mapping/base/error.h>
 
 namespace gonio {
@@ -72,7 +73,7 @@ class Rules {
 }  // namespace
 
 json parse_json(std::string_view text, const std::string& where) {
-  if (text.substr(0, 2) == "\xff\xfe" || text.substr(0, 2) == "\xfe\xff")
+  if (begins_as_utf16(text))
     throw Error(where + ": found UTF-16, expected JSON in UTF-8 (iconv -f UTF-16 -t UTF-8 FILE > NEW writes it)");
   Rules rules(where);
   try {

@@ -44,4 +44,10 @@ std::string read_bytes(const std::filesystem::path& path, std::uintmax_t limit) 
   return bytes;
 }
 
+bool begins_as_exr(std::string_view bytes) noexcept { return bytes.substr(0, 4) == "\x76\x2f\x31\x01"; }
+
+bool begins_as_utf16(std::string_view bytes) noexcept {
+  return bytes.substr(0, 2) == "\xff\xfe" || bytes.substr(0, 2) == "\xfe\xff";
+}
+
 }  // namespace gonio

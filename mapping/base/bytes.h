@@ -5,6 +5,7 @@
 #include <cstring>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <type_traits>
 
 namespace gonio {
@@ -18,6 +19,12 @@ std::uintmax_t regular_file_size(const std::filesystem::path& path);
 /// The first `limit` bytes of a regular file, or all of it if it is shorter. Every file that is read as bytes
 /// comes through here. @throws Error if the file cannot be read, or is a Git LFS pointer
 std::string read_bytes(const std::filesystem::path& path, std::uintmax_t limit = UINTMAX_MAX);
+
+/// True for the magic number of OpenEXR.
+bool begins_as_exr(std::string_view bytes) noexcept;
+
+/// True for a mark of the byte order of UTF-16.
+bool begins_as_utf16(std::string_view bytes) noexcept;
 
 /// Cursor over a block of bytes that refuses to pass its end. Does not own the bytes.
 class ByteReader {

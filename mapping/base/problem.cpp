@@ -8,7 +8,7 @@ std::string to_string(const Problem& problem) {
   return line + problem.field + ": found " + problem.found + ", expected " + problem.expected;
 }
 
-void throw_if_fatal(const std::string& file, const std::vector<Problem>& problems) {
+void throw_if_fatal(const std::string& file, const Problems& problems) {
   std::string text;
   for (const Problem& problem : problems) {
     if (problem.fatal) text += (text.empty() ? "" : "; ") + to_string(problem);

@@ -28,7 +28,7 @@ RglFile to_rgl(const std::filesystem::path& in, const std::filesystem::path& out
                bool rgb_only) {
   if (is_exr(in)) {
     const StackFile stack = load_stack(in);
-    const Bsdf bsdf = load_bsdf(in);
+    const Bsdf bsdf = to_bsdf(stack, in);
     return resample(
         in, out, [&](const auto& wi, const auto& wo) { return bsdf.eval(wi, wo); }, stack.name);
   }

@@ -12,7 +12,6 @@
 #include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
 #include <ImfVecAttribute.h>
-#include <ImfVersion.h>
 
 #include <gonio/mapping/base/atomic_file.h>
 #include <gonio/mapping/base/bytes.h>
@@ -142,10 +141,7 @@ Luminaire read(const std::string& name) {
   return light;
 }
 
-bool is_exr(const std::filesystem::path& path) {
-  const std::string magic = read_bytes(path, 4);
-  return magic.size() == 4 && Imf::isImfMagic(magic.data());
-}
+bool is_exr(const std::filesystem::path& path) { return begins_as_exr(read_bytes(path, 4)); }
 
 }  // namespace
 

@@ -18,8 +18,7 @@ TriangleMesh read_mesh(std::string_view bytes, const std::string& where) {
   // Every vertex takes a byte and more: so its index has 32 bits.
   if (bytes.size() > std::numeric_limits<std::uint32_t>::max())
     throw Error(where + ": found " + std::to_string(bytes.size()) + " bytes, expected at most 4 GiB");
-  if (bytes.substr(0, 2) == "\xff\xfe" || bytes.substr(0, 2) == "\xfe\xff")
-    throw Error(where + ": found UTF-16, expected PLY or OBJ in ASCII");
+  if (begins_as_utf16(bytes)) throw Error(where + ": found UTF-16, expected PLY or OBJ in ASCII");
   std::string_view rest = bytes;
   const bool ply = !bytes.empty() && next_line(rest) == "ply";
   TriangleMesh mesh = ply ? read_ply(bytes, where) : read_obj(bytes, where);

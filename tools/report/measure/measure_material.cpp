@@ -260,9 +260,9 @@ void add_compact(const std::shared_ptr<const BrdfTable>& table, Bench& bench, st
 }
 
 MaterialReport measure_stack_file(const std::filesystem::path& path, const Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
   const StackFile file = load_stack(path);
   MaterialReport material{file.name, path.string(), "stack", std::filesystem::file_size(path), {}};
-  const auto start = std::chrono::steady_clock::now();
   nlohmann::json params = stack_params(file.bsdf);
   params["self_contained"] = true;
   Bench bench;
@@ -275,7 +275,7 @@ MaterialReport measure_stack_file(const std::filesystem::path& path, const Progr
   if (file.bsdf.interpolation == Interpolation::mixture)
     add(StackBsdf(file.bsdf));
   else
-    add(load_bsdf(path));
+    add(to_bsdf(file, path));
   bench.run(material, progress);
   material.stack.emplace(file.bsdf.diagrams, file.bsdf.interpolation);
   return material;
