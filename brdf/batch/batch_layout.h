@@ -33,8 +33,7 @@ struct BatchAngles {
 /// - A group of meridians: the mass before each of its cells (7), a gap, phi and mass of each of its 8 meridians in
 /// turn.
 /// - A group of parallels: the mass along the meridian before each of its cells (7), the densities at its 8 parallels,
-/// a gap. It is a line
-///   of the cache.
+/// a gap. It is a line of the cache.
 /// What is searched ends in values that no number is above: phi and r behind their last lines, masses behind the last
 /// cell. There is room for whole vectors, in phi and r from their second lines on.
 struct BatchLayout {

@@ -14,8 +14,7 @@ namespace gonio {
 ///
 /// If the variance asked for is out of reach within the budget, the BSDF is the nearest to it that fits.
 /// @throws Error if `table` is null, for sizes, a variance or a budget out of range, and for packed16 with another
-/// interpolation
-///   than blend.
+/// interpolation than blend.
 Bsdf make_bsdf(std::shared_ptr<const BrdfTable> table, const BsdfOptions& options = {}, const Progress& progress = {});
 
 }  // namespace gonio

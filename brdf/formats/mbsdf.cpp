@@ -21,7 +21,7 @@ struct Block {
 };
 
 // Reads the binary part that follows a data line. False: a fatal problem was added.
-bool parse_block(ByteReader& reader, const std::string& name, Block& block, std::vector<Problem>& problems) {
+bool parse_block(ByteReader& reader, const std::string& name, Block& block, Problems& problems) {
   std::uint32_t n[3];  // type, n_theta, n_phi
   if (!reader.read(n, 3)) {
     problems.push_back(
@@ -71,7 +71,7 @@ bool parse_line(ByteReader& reader, std::string& line) {
 
 }  // namespace
 
-MbsdfFile parse_mbsdf(const std::string& bytes, std::vector<Problem>& problems) {
+MbsdfFile parse_mbsdf(const std::string& bytes, Problems& problems) {
   MbsdfFile file;
   if (bytes.compare(0, magic.size(), magic) != 0) {
     problems.push_back({"magic", "something else", "\"NVIDIA ARC MBSDF V1\" and a line end", true});
@@ -122,7 +122,7 @@ MbsdfFile parse_mbsdf(const std::string& bytes, std::vector<Problem>& problems) 
 }
 
 MbsdfFile read_mbsdf(const std::filesystem::path& path) {
-  std::vector<Problem> problems;
+  Problems problems;
   MbsdfFile file = parse_mbsdf(read_bytes(path), problems);
   throw_if_fatal(path.string(), problems);
   return file;

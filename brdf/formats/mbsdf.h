@@ -32,7 +32,7 @@ MbsdfFile read_mbsdf(const std::filesystem::path& path);
 
 /// The same from bytes in memory; adds to `problems` instead of throwing. The values are empty if a
 /// fatal problem was found.
-MbsdfFile parse_mbsdf(const std::string& bytes, std::vector<Problem>& problems);
+MbsdfFile parse_mbsdf(const std::string& bytes, Problems& problems);
 
 /// Writes an MBSDF file with reflection alone, or leaves `path` untouched and throws Error. The
 /// format has one number of thetas: n_theta_in and n_theta_out must agree.
@@ -43,8 +43,7 @@ void write_mbsdf(const std::filesystem::path& path, const MbsdfFile& file);
 class MbsdfTable {
  public:
   /// @throws Error if a size is < 1, the number of values does not fit, under CellPolicy::reject,
-  /// or
-  ///   if there is no valid cell.
+  /// or if there is no valid cell.
   explicit MbsdfTable(const MbsdfFile& file, const CellPolicies& policies = {});
 
   /// f_r in 1/sr, trilinear between cell centres, constant beyond the outermost ones, mirrored in

@@ -27,7 +27,7 @@ bool above_horizon(double theta_h, double theta_d, double phi_d) {
 
 }  // namespace
 
-MerlFile parse_merl(const std::string& bytes, std::vector<Problem>& problems) {
+MerlFile parse_merl(const std::string& bytes, Problems& problems) {
   MerlFile file;
   ByteReader reader(bytes);
   std::int32_t n[3] = {0, 0, 0};
@@ -53,7 +53,7 @@ MerlFile parse_merl(const std::string& bytes, std::vector<Problem>& problems) {
 }
 
 MerlFile read_merl(const std::filesystem::path& path) {
-  std::vector<Problem> problems;
+  Problems problems;
   MerlFile file = parse_merl(read_bytes(path), problems);
   throw_if_fatal(path.string(), problems);
   return file;

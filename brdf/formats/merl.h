@@ -33,13 +33,12 @@ struct MerlFile {
 inline constexpr double merl_scale[3] = {1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0};
 
 /// @throws Error if the file cannot be read, its dimensions are not 90 x 90 x (180 or 360), or its
-/// size
-///   is not the one they ask for.
+/// size is not the one they ask for.
 MerlFile read_merl(const std::filesystem::path& path);
 
 /// The same from bytes in memory; adds to `problems` instead of throwing. The values are empty if a
 /// fatal problem was found.
-MerlFile parse_merl(const std::string& bytes, std::vector<Problem>& problems);
+MerlFile parse_merl(const std::string& bytes, Problems& problems);
 
 /// Writes the file, or leaves `path` untouched and throws Error.
 void write_merl(const std::filesystem::path& path, const MerlFile& file);

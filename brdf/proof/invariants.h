@@ -67,9 +67,8 @@ struct InvariantOptions {
 /// - `pdf`: the returned pdf against pdf(), in units of the pdf bounds.
 /// - `weight`: the weight against f_r cos theta_o / pdf, relative.
 /// - `edge_domain`, `edge_pdf`, `edge_weight`: draws next to the sides of the square, at all distances from them: the
-/// number of
-///   draws that are none, the pdf and the weight; see scan_edges() and the bounds above. Weights where there is f_r
-///   alone.
+/// number of draws that are none, the pdf and the weight; see scan_edges() and the bounds above. Weights where there is
+/// f_r alone.
 /// - `directions`: the largest weight f_r cos theta_o / pdf of any direction, whether a draw falls there or not.
 /// - `support`: share of the albedo at directions with f_r > 0 and pdf = 0; 0.
 /// - `round_trip_square`: |invert(sample(u, v)) - (u, v)|, the largest component.

@@ -11,11 +11,11 @@
 namespace gonio {
 namespace {
 
-bool any_fatal(const std::vector<Problem>& problems) {
+bool any_fatal(const Problems& problems) {
   return std::any_of(problems.begin(), problems.end(), [](const Problem& p) { return p.fatal; });
 }
 
-void check_cells(const CellCounts& cells, std::vector<Problem>& problems) {
+void check_cells(const CellCounts& cells, Problems& problems) {
   const auto report = [&](const char* kind, std::uint64_t count) {
     if (count == 0) return;
     problems.push_back(
@@ -26,7 +26,7 @@ void check_cells(const CellCounts& cells, std::vector<Problem>& problems) {
   report("missing (not measured)", cells.missing);
 }
 
-void check_albedo(const BrdfTable& table, std::vector<Problem>& problems) {
+void check_albedo(const BrdfTable& table, Problems& problems) {
   // Above the error of the quadrature, so that a lossless material raises no doubt.
   constexpr float limit = 1.005f;
   float largest = 0.0f;
@@ -47,8 +47,8 @@ void check_albedo(const BrdfTable& table, std::vector<Problem>& problems) {
   }
 }
 
-std::vector<Problem> check(const std::filesystem::path& path) {
-  std::vector<Problem> problems;
+Problems check(const std::filesystem::path& path) {
+  Problems problems;
   switch (sniff_format(path)) {
     case TableFormat::merl:
       parse_merl(read_bytes(path), problems);
@@ -72,7 +72,7 @@ std::vector<Problem> check(const std::filesystem::path& path) {
 
 }  // namespace
 
-std::vector<Problem> validate_table(const std::filesystem::path& path) {
+Problems validate_table(const std::filesystem::path& path) {
   try {
     return check(path);
   } catch (const Error& error) {

@@ -52,8 +52,7 @@ class SphereDiagram {
   /// The map. u and v in [0, 1]; other values are clamped. Of a hemispherical grid, the gap is at least `least_gap`.
   Place at(T u, T v) const noexcept;
   /// The place of a direction. @param w a unit vector; below the equator of a hemispherical grid
-  /// the
-  ///   place is on its edge.
+  /// the place is on its edge.
   Place place_of(const Vec3<T>& w) const noexcept;
   /// The inverse map.
   SquarePoint<T> square_of(const Place& place) const noexcept;

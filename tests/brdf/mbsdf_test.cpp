@@ -28,14 +28,14 @@ MbsdfFile make_grid(int n_in, int n_out, int n_phi, int channels = 3) {
   return file;
 }
 
-MbsdfFile parse(const std::string& bytes, std::vector<Problem>& problems) {
+MbsdfFile parse(const std::string& bytes, Problems& problems) {
   MbsdfFile file = parse_mbsdf(bytes, problems);
   throw_if_fatal("test", problems);
   return file;
 }
 
 std::string message(const std::string& bytes) {
-  std::vector<Problem> problems;
+  Problems problems;
   try {
     parse(bytes, problems);
   } catch (const Error& error) {
@@ -143,7 +143,7 @@ TEST(Grid, RoundTrip) {
 TEST(Grid, PartsOfAFile) {
   const std::vector<float> a(12, 1.0f), b(12, 2.0f);
   const std::string both = make_mbsdf(0, 2, 3, a, "MBSDF_DATA_TRANSMISSION=\n") + make_mbsdf(0, 2, 3, b).substr(20);
-  std::vector<Problem> problems;
+  Problems problems;
   const MbsdfFile file = parse(both, problems);
   EXPECT_EQ(file.values, b);
   EXPECT_TRUE(file.has_transmission);

@@ -19,7 +19,7 @@ using namespace test;
 using ::testing::HasSubstr;
 
 RglFile parse(const TensorBuilder& builder) {
-  std::vector<Problem> problems;
+  Problems problems;
   RglFile file = parse_rgl(builder.bytes(), problems);
   throw_if_fatal("test", problems);
   return file;
@@ -248,7 +248,7 @@ TEST(Rgl, CutOffFilesSayHowLongTheyShouldBe) {
   const std::string bytes = make_rgl().bytes();
   const std::size_t data = bytes.find("uniform");
   for (std::size_t n = 18; n < bytes.size(); ++n) {
-    std::vector<Problem> problems;
+    Problems problems;
     parse_rgl(bytes.substr(0, n), problems);
     ASSERT_EQ(problems.size(), 1u) << n;
     const std::string text = to_string(problems[0]);
@@ -268,7 +268,7 @@ TEST(Rgl, FieldsBeyondTheEndAreNotReadWhereTheListIsBroken) {
   const std::uint64_t far = std::uint64_t{1} << 40;
   std::memcpy(bytes.data() + bytes.find("ndf") + 3 + 2 + 1, &far,
               sizeof(far));  // the offset, after dimensions and type
-  std::vector<Problem> problems;
+  Problems problems;
   parse_rgl(bytes, problems);
   ASSERT_FALSE(problems.empty());
   EXPECT_THAT(to_string(problems[0]), HasSubstr("99 dimensions"));
@@ -284,7 +284,7 @@ TEST(Rgl, CellsBeyondAnyBrdfAreNotFinite) {
   for (std::size_t k = 0; k < rgb.size(); k += 2) rgb[k] = -3e38f;
   rgb[6] = rgb[13] = rgb[20] = 0.5f;
   file["rgb"].data.assign(reinterpret_cast<const char*>(rgb.data()), rgb.size() * sizeof(float));
-  std::vector<Problem> problems;
+  Problems problems;
   const RglFile parsed = parse_rgl(file.bytes(), problems);
   try {
     const RglTable table(parsed, {});

@@ -86,7 +86,7 @@ TEST(RglResample, ModelsWithinOnePercent) {
 
 // What the densities of a file must do is not a matter of course.
 TEST(RglResample, TheMeasureCanFail) {
-  std::vector<Problem> problems;
+  Problems problems;
   const RglTable table(parse_rgl(make_rgl().bytes(), problems), {});
   const RglQuality quality = measure(table, model("default"), 30);
   EXPECT_GT(std::abs(quality.integral - 1.0), 0.05);
@@ -159,7 +159,7 @@ TEST(RglWrite, FieldsOfAllReaders) {
   write_rgl(folder / "rgb.bsdf", file, RglColour::rgb);
   const std::uint64_t n = file.theta_i.size(), wavelengths = rgb_spectra().wavelengths.size();
   for (const bool both : {true, false}) {
-    std::vector<Problem> problems;
+    Problems problems;
     const TensorFile read(file_bytes(folder / (both ? "both.bsdf" : "rgb.bsdf")), problems);
     EXPECT_TRUE(problems.empty());
     const auto expect = [&](const char* name, Type type, const Shape& shape) {
@@ -195,7 +195,7 @@ TEST(RglWrite, SpectraHaveTheColours) {
   const RglFile file = resample_as_rgl(model("ggx:F0=0.9/0.6/0.2"), "", small);
   const TemporaryFolder folder;
   write_rgl(folder / "a.bsdf", file);
-  std::vector<Problem> problems;
+  Problems problems;
   const TensorFile read(file_bytes(folder / "a.bsdf"), problems);
   const std::vector<float> spectra = read.floats(*read.find("spectra"));
   const std::vector<glm::vec3> weights = rec709_weights(read.floats(*read.find("wavelengths")));
@@ -269,7 +269,7 @@ TEST(RglWrite, NaNStaysInItsChannel) {
   file.colour[cell] = {0.5f, std::numeric_limits<float>::quiet_NaN(), 0.25f};
   const TemporaryFolder folder;
   write_rgl(folder / "a.bsdf", file);
-  std::vector<Problem> problems;
+  Problems problems;
   const TensorFile read(file_bytes(folder / "a.bsdf"), problems);
   const std::vector<float> rgb = read.floats(*read.find("rgb")), spectra = read.floats(*read.find("spectra"));
   EXPECT_EQ(std::count_if(rgb.begin(), rgb.end(), [](float x) { return !std::isfinite(x); }), 1);
@@ -283,7 +283,7 @@ TEST(RglWrite, NaNStaysInItsChannel) {
 }
 
 TEST(RglWrite, RefusesWhatOtherReadersRefuse) {
-  std::vector<Problem> problems;
+  Problems problems;
   RglFile file = parse_rgl(make_rgl().bytes(), problems);
   const TemporaryFolder folder;
   const auto message = [&] {

@@ -15,13 +15,13 @@ using namespace test;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-std::vector<std::string> texts(const std::vector<Problem>& problems) {
+std::vector<std::string> texts(const Problems& problems) {
   std::vector<std::string> result;
   for (const Problem& problem : problems) result.push_back(to_string(problem));
   return result;
 }
 
-bool usable(const std::vector<Problem>& problems) {
+bool usable(const Problems& problems) {
   return std::none_of(problems.begin(), problems.end(), [](const Problem& p) { return p.fatal; });
 }
 
@@ -116,7 +116,7 @@ TEST(Validate, AnyByteChanged) {
       for (const int value : {0x00, 0x01, 0x7f, 0x80, 0xff}) {
         std::string bytes = *original;
         bytes[i] = static_cast<char>(value);
-        std::vector<Problem> problems;
+        Problems problems;
         if (original == &mbsdf) {
           parse_mbsdf(bytes, problems);
         } else {

@@ -108,7 +108,7 @@ TEST(Measured, RglBetweenItsIncidentAngles) {
   TensorBuilder file = make_rgl();
   file["theta_i"].data.clear();
   for (const float theta : {0.1f, 0.8f, 1.4f}) append(file["theta_i"].data, theta);
-  std::vector<Problem> problems;
+  Problems problems;
   const RglTable table(parse_rgl(file.bytes(), problems), {});
   ASSERT_TRUE(problems.empty());
   const glm::vec3 wo = direction(0.5, 1);
@@ -124,7 +124,7 @@ TEST(Measured, RglNodes) {
   TensorBuilder file = make_rgl();
   std::string& colours = file["rgb"].data;  // [theta_i][channel][3][2]
   std::memcpy(&colours[4 * (18 + 2)], &nan, 4);
-  std::vector<Problem> problems;
+  Problems problems;
   const RglTable table(parse_rgl(file.bytes(), problems), {});
   EXPECT_EQ(table.cells().nonfinite, 1u);
   float least = 1, most = 0;

@@ -12,7 +12,7 @@
 
 namespace gonio::fuzz {
 
-inline bool usable(const std::vector<Problem>& problems) {
+inline bool usable(const Problems& problems) {
   return std::none_of(problems.begin(), problems.end(), [](const Problem& p) { return p.fatal; });
 }
 

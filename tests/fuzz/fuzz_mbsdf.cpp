@@ -5,7 +5,7 @@
 
 // Bytes to an MBSDF file; what is usable is made a table and evaluated.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  std::vector<gonio::Problem> problems;
+  gonio::Problems problems;
   const gonio::MbsdfFile file = gonio::parse_mbsdf(std::string(reinterpret_cast<const char*>(data), size), problems);
   if (!gonio::fuzz::usable(problems)) return 0;
   try {

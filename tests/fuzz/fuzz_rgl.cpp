@@ -5,7 +5,7 @@
 
 // Bytes to an RGL file; what is usable is made a table, evaluated and sampled.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  std::vector<gonio::Problem> problems;
+  gonio::Problems problems;
   gonio::RglFile file = gonio::parse_rgl(std::string(reinterpret_cast<const char*>(data), size), problems);
   if (!gonio::fuzz::usable(problems)) return 0;
   try {

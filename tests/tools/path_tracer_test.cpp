@@ -41,7 +41,7 @@ const Bsdf& glossy_bsdf() {
 std::shared_ptr<const Scatter> glossy() { return make_scatter(glossy_bsdf()); }
 
 std::shared_ptr<const BrdfTable> rgl_table() {
-  std::vector<Problem> problems;
+  Problems problems;
   return table_of(RglTable(parse_rgl(test::make_rgl({0.20f, 0.25f, 0.30f}).bytes(), problems), {}));
 }
 

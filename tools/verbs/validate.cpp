@@ -25,7 +25,7 @@ namespace {
 
 /// A name that promises one format over content of another is an error even though gonio reads the
 /// file: other programs go by the name.
-void check_name(const std::filesystem::path& path, const std::string& expected, std::vector<Problem>& problems) {
+void check_name(const std::filesystem::path& path, const std::string& expected, Problems& problems) {
   std::string found = path.extension().string();
   for (char& c : found) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   const bool promises =
@@ -41,7 +41,7 @@ std::string text_of(const Error& error, const std::filesystem::path& path) {
 }
 
 /// The mean of W over the unit square, which is the albedo, is that of the cells: one layer at a time.
-void check_albedo(const Colour& colour, std::vector<Problem>& problems) {
+void check_albedo(const Colour& colour, Problems& problems) {
   constexpr double limit = 1.005;  // as for tables
   const std::vector<glm::vec3> values = colour.values();
   const std::size_t cells = values.size() / colour.theta_i().size();
@@ -59,8 +59,8 @@ void check_albedo(const Colour& colour, std::vector<Problem>& problems) {
                         "at most 1, or it reflects more than it receives", false});
 }
 
-std::vector<Problem> check_stack(const std::filesystem::path& path) {
-  std::vector<Problem> problems;
+Problems check_stack(const std::filesystem::path& path) {
+  Problems problems;
   StackFile file;
   try {
     file = load_stack(path);
@@ -89,8 +89,8 @@ std::vector<Problem> check_stack(const std::filesystem::path& path) {
   return problems;
 }
 
-std::vector<Problem> check_model(const std::filesystem::path& path) {
-  std::vector<Problem> problems;
+Problems check_model(const std::filesystem::path& path) {
+  Problems problems;
   try {
     const BrdfTable table = load_input(path);
     double largest = 0, where = 0;
@@ -112,8 +112,8 @@ std::vector<Problem> check_model(const std::filesystem::path& path) {
   return problems;
 }
 
-std::vector<Problem> check_file(const std::filesystem::path& path) {
-  std::vector<Problem> problems;
+Problems check_file(const std::filesystem::path& path) {
+  Problems problems;
   if (is_exr(path)) {
     problems = check_stack(path);
     check_name(path, ".exr", problems);
@@ -143,7 +143,7 @@ std::vector<Problem> check_file(const std::filesystem::path& path) {
 
 /// Prints what is wrong with a file. False if it cannot be used.
 bool report(const std::string& path) {
-  std::vector<Problem> problems;
+  Problems problems;
   {
     const ProgressLine progress("checking " + path);
     problems = check_file(path);

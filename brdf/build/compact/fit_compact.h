@@ -33,8 +33,7 @@ struct CompactChoice {
 /// evaluation error is at most a fifth of its root, or hardly larger than that of the finest colour; otherwise the
 /// least evaluation error within the budget. Interpolation and storage of the options do not count.
 /// @throws Error for a variance that is not > 0, sizes out of range, or a budget of less than 1 KiB or into which
-/// nothing
-///   fits.
+/// nothing fits.
 CompactChoice fit_compact(const BrdfTable& table, const BsdfOptions& options = {}, const Progress& progress = {});
 
 /// The error over the bytes: a fit for each variance asked for (descending), in the better chart of each, those

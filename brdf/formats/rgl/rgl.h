@@ -36,13 +36,12 @@ struct RglFile {
 /// Reads an RGL file with colours (`rgb`) or spectra (`spectra`, `wavelengths`; see
 /// rec709_weights).
 /// @throws Error naming every field at fault. Anisotropic files are refused: more than two phi_i,
-/// or
-///   two whose data differ.
+/// or two whose data differ.
 RglFile read_rgl(const std::filesystem::path& path);
 
 /// The same from bytes in memory; adds to `problems` instead of throwing. Not usable if a fatal
 /// problem was found.
-RglFile parse_rgl(std::string bytes, std::vector<Problem>& problems);
+RglFile parse_rgl(std::string bytes, Problems& problems);
 
 /// Repairs the values of ndf, sigma, vndf and luminance that are negative or not finite, as CellPolicies
 /// says. CellPolicy::fill takes the nearest valid value along theta, else phi, else theta_i.

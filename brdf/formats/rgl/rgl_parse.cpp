@@ -16,7 +16,7 @@ constexpr const char* anisotropic = "at most 2 with the same data: only isotropi
 // Reads the fields one by one and collects everything that is wrong with them.
 class Parser {
  public:
-  Parser(const TensorFile& file, std::vector<Problem>& problems) : file_(file), problems_(problems) {}
+  Parser(const TensorFile& file, Problems& problems) : file_(file), problems_(problems) {}
 
   RglFile parse() {
     RglFile result;
@@ -213,13 +213,13 @@ class Parser {
   }
 
   const TensorFile& file_;
-  std::vector<Problem>& problems_;
+  Problems& problems_;
   std::uint64_t n_phi_ = 1, n_theta_ = 1;
 };
 
 }  // namespace
 
-RglFile parse_rgl(std::string bytes, std::vector<Problem>& problems) {
+RglFile parse_rgl(std::string bytes, Problems& problems) {
   const std::size_t before = problems.size();
   const TensorFile file(std::move(bytes), problems);
   const bool container_read =
@@ -228,7 +228,7 @@ RglFile parse_rgl(std::string bytes, std::vector<Problem>& problems) {
 }
 
 RglFile read_rgl(const std::filesystem::path& path) {
-  std::vector<Problem> problems;
+  Problems problems;
   RglFile file = parse_rgl(read_bytes(path), problems);
   throw_if_fatal(path.string(), problems);
   return file;

@@ -34,7 +34,7 @@ std::string shape_text(const std::vector<std::uint64_t>& shape) {
 
 }  // namespace
 
-TensorFile::TensorFile(std::string bytes, std::vector<Problem>& problems) : bytes_(std::move(bytes)) {
+TensorFile::TensorFile(std::string bytes, Problems& problems) : bytes_(std::move(bytes)) {
   ByteReader reader(bytes_);
   char found_magic[sizeof(magic)];
   std::uint8_t version[2];

@@ -24,7 +24,7 @@ class TensorFile {
 
   /// Reads the list of fields. Damaged fields are left out and reported in `problems`. A file that is
   /// cut off has no fields, and one problem that says how long it should be.
-  TensorFile(std::string bytes, std::vector<Problem>& problems);
+  TensorFile(std::string bytes, Problems& problems);
 
   /// Null if there is no such field.
   const Field* find(const std::string& name) const noexcept;
