@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <limits>
 #include <memory>
@@ -26,6 +25,7 @@
 
 #include "tests/support/batch_subject.h"
 #include "tests/support/batch_targets.h"
+#include "tests/support/files.h"
 
 namespace gonio {
 namespace {
@@ -530,10 +530,9 @@ TEST(Bsdf, RefusesBadOptions) {
 
 // The figures the library promises on real measurements, for every method that has to hold them.
 TEST(Bsdf, RealMaterials) {
-  const char* data = std::getenv("GONIO_TEST_DATA");
-  if (!data) GTEST_SKIP() << "GONIO_TEST_DATA is unset: no measured materials";
+  if (test::test_data().empty()) GTEST_SKIP() << "GONIO_TEST_DATA is unset: no measured materials";
   for (const char* file : {"rgl/cg_sunflower_rgb.bsdf", "mbsdf/carpaint_red.mbsdf"}) {
-    const auto table = std::make_shared<const BrdfTable>(load_table(std::filesystem::path(data) / file));
+    const auto table = std::make_shared<const BrdfTable>(load_table(test::test_data() / file));
     const CompactFit fit = fit_compact(*table).best();
     EXPECT_LE(fit.bytes, 256u * 1024) << file;  // when packed
     const Bsdf bsdf(fit.data, table);

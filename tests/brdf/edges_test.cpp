@@ -1,7 +1,6 @@
 // The sides of the unit square, where random numbers hardly come: see brdf/proof/edges.h.
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <limits>
 #include <memory>
@@ -22,6 +21,7 @@
 #include <gonio/mapping/light/exr/light_exr.h>
 
 #include "tests/support/batch_subject.h"
+#include "tests/support/files.h"
 
 namespace gonio::proof {
 namespace {
@@ -82,9 +82,8 @@ TEST(Edges, Lobes) {
 // All measured files: slow, since stacks are built. The files of MERL's format are surrogates that a script writes.
 class MeasuredEdges : public testing::TestWithParam<const char*> {};
 TEST_P(MeasuredEdges, AreSound) {
-  const char* data = std::getenv("GONIO_TEST_DATA");
-  if (!data) GTEST_SKIP() << "GONIO_TEST_DATA is not set";
-  const std::filesystem::path path = std::filesystem::path(data) / GetParam();
+  if (test::test_data().empty()) GTEST_SKIP() << "GONIO_TEST_DATA is not set";
+  const std::filesystem::path path = test::test_data() / GetParam();
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path.string() << " is not there";
   std::vector<double> angles;
   for (const double theta_i : {0.0, 2.0, 10.0, 30.0, 50.0, 70.0, 80.0, 85.0, 88.3}) angles.push_back(theta_i * degree);
@@ -92,9 +91,8 @@ TEST_P(MeasuredEdges, AreSound) {
 }
 /// Stacks for displacement: up to three times the interior's weight, in half vectors six times.
 TEST_P(MeasuredEdges, AreSoundBetweenDiagrams) {
-  const char* data = std::getenv("GONIO_TEST_DATA");
-  if (!data) GTEST_SKIP() << "GONIO_TEST_DATA is not set";
-  const std::filesystem::path path = std::filesystem::path(data) / GetParam();
+  if (test::test_data().empty()) GTEST_SKIP() << "GONIO_TEST_DATA is not set";
+  const std::filesystem::path path = test::test_data() / GetParam();
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path.string() << " is not there";
   const auto from = std::make_shared<const BrdfTable>(load_table(path));
   for (const Chart chart : charts) {
@@ -169,10 +167,9 @@ TEST(Edges, Emission) {
 }
 
 TEST(SlowEdges, MeasuredLuminaires) {
-  const char* data = std::getenv("GONIO_TEST_DATA");
-  if (!data) GTEST_SKIP() << "GONIO_TEST_DATA is not set";
+  if (test::test_data().empty()) GTEST_SKIP() << "GONIO_TEST_DATA is not set";
   int sampled = 0;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(std::filesystem::path(data) / "photometric")) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(test::test_data() / "photometric")) {
     if (!entry.is_regular_file() || entry.path().filename() == "test_file_format_error.ies" ||
         !is_light_file(entry.path()))
       continue;

@@ -20,13 +20,14 @@
 #include <ImfStringAttribute.h>
 #include <ImfTiledRgbaFile.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/brdf/proof/samplers/stack_bsdf.h>
 #include <gonio/mapping/base/bytes.h>
 #include <gonio/mapping/base/error.h>
 #include <gonio/mapping/stack/packed_stack.h>
+
+#include "tests/support/files.h"
 
 namespace gonio {
 namespace {
@@ -35,16 +36,9 @@ namespace fs = std::filesystem;
 
 class StackFileTest : public testing::Test {
  protected:
-  StackFileTest() {
-    const std::string test = testing::UnitTest::GetInstance()->current_test_info()->name();
-    folder_ = fs::path(testing::TempDir()) / ("stack_file_" + test + std::to_string(getpid()));
-    fs::create_directories(folder_);
-  }
-  ~StackFileTest() override { fs::remove_all(folder_); }
-
   fs::path path(const std::string& name) const { return folder_ / name; }
 
-  fs::path folder_;
+  test::TemporaryFolder folder_;
 };
 
 double uniform(std::mt19937& random) { return static_cast<double>(random()) / 4294967296.0; }
@@ -240,7 +234,7 @@ TEST_F(StackFileTest, RecognisedByContent) {
   EXPECT_FALSE(is_exr(path("b.exr")));
   EXPECT_NE(message_of(path("b.exr")).find("b.exr: content: found no OpenEXR file"), std::string::npos);
   EXPECT_THROW(is_exr(path("missing.exr")), Error);
-  EXPECT_THROW(is_exr(folder_), Error);
+  EXPECT_THROW(is_exr(folder_.path()), Error);
 }
 
 TEST_F(StackFileTest, TruncatedAtAnyLength) {
@@ -475,7 +469,7 @@ TEST_F(StackFileTest, SaveRefusesWhatIsNoStack) {
   StackFile full = make_file(1);
   full.bsdf.diagrams.diagrams[0].azimuth = Azimuth::full;
   EXPECT_THROW(save_stack(path("a.exr"), full), Error);
-  EXPECT_TRUE(fs::is_empty(folder_));
+  EXPECT_TRUE(fs::is_empty(folder_.path()));
 }
 
 TEST_F(StackFileTest, SaveLeavesNothingHalfWritten) {
@@ -484,7 +478,7 @@ TEST_F(StackFileTest, SaveLeavesNothingHalfWritten) {
   fs::create_directory(path("folder.exr"));
   EXPECT_THROW(save_stack(path("folder.exr"), file), Error);
   EXPECT_THROW(save_stack("/proc/a.exr", file), Error);
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), fs::directory_iterator()), 1);
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <sstream>
 #include <string>
@@ -10,6 +9,8 @@
 #include <glm/geometric.hpp>
 
 #include <gonio/mapping/light/files/luminaire.h>
+
+#include "tests/support/files.h"
 
 namespace gonio::testing {
 
@@ -133,9 +134,8 @@ inline double largest_difference(const LightDiagram& a, const LightDiagram& b, i
 /// All photometric files of GONIO_TEST_DATA but the one that is marked as broken; empty without it.
 inline std::vector<std::filesystem::path> photometric_files() {
   std::vector<std::filesystem::path> files;
-  const char* data = std::getenv("GONIO_TEST_DATA");
-  if (data == nullptr) return files;
-  const std::filesystem::path folder = std::filesystem::path(data) / "photometric";
+  if (test::test_data().empty()) return files;
+  const std::filesystem::path folder = test::test_data() / "photometric";
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
     const std::string extension = entry.path().extension().string();
     if ((extension == ".ies" || extension == ".ldt") && entry.path().filename() != "test_file_format_error.ies")

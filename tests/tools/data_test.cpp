@@ -1,18 +1,16 @@
 // The files of data/, by the program GONIO_TOOL as a user meets them.
 
-#include <cstdlib>
 #include <map>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/mapping/base/bytes.h>
 
-#include "tests/support/table_files.h"
+#include "tests/support/tool_fixture.h"
 
 namespace gonio {
 namespace {
@@ -42,16 +40,7 @@ std::vector<fs::path> files_in(const fs::path& folder) {
   return files;
 }
 
-class DataTest : public testing::Test {
- protected:
-  int run(const std::string& arguments) const {
-    const int status =
-        std::system(("cd '" + folder_.path().string() + "' && '" GONIO_TOOL "' " + arguments + " >out 2>err").c_str());
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-  std::string text(const std::string& name) const { return test::file_bytes(folder_ / name); }
-  test::TemporaryFolder folder_;
-};
+using DataTest = test::ToolFixture;
 
 TEST_F(DataTest, IsWhatTheReadmeSaysAndSmall) {
   const auto rows = described();
@@ -83,43 +72,41 @@ TEST_F(DataTest, MaterialsAreSelfContainedAndSayWhoseTheyAre) {
          {"made of " + stack.source, "relvar at most " + row[2] + " ", "evaluation error " + row[3] + ",",
           "albedo within " + row[4], std::string("derived from a measurement"), std::string("CC0")})
       EXPECT_NE(stack.comments.find(part), std::string::npos) << part << "\nin " << stack.comments;
-    EXPECT_EQ(run("validate '" + file.string() + "'"), 0) << text("out");
+    EXPECT_EQ(run("validate '" + file.string() + "'"), 0) << out();
   }
 }
 
 TEST_F(DataTest, TheDefaultIsThatOfSynth) {
-  ASSERT_EQ(run("synth default -o default.json"), 0) << text("err");
+  ASSERT_EQ(run("synth default -o default.json"), 0) << err();
   EXPECT_EQ(text("default.json"), read_bytes(data / "default.json"));
-  EXPECT_EQ(run("validate default.json"), 0) << text("out");
+  EXPECT_EQ(run("validate default.json"), 0) << out();
 }
 
 TEST_F(DataTest, LampsAreAsTheStandardsHaveThem) {
   for (const fs::path& file : files_in(data / "lights")) {
-    EXPECT_EQ(run("light validate '" + file.string() + "'"), 0) << text("out");
-    EXPECT_NE(text("out").find(", 0 deviations"), std::string::npos) << text("out");
-    ASSERT_EQ(run("light info '" + file.string() + "'"), 0) << text("err");
-    EXPECT_EQ(text("out").find("hint"), std::string::npos) << text("out");
+    EXPECT_EQ(run("light validate '" + file.string() + "'"), 0) << out();
+    EXPECT_NE(out().find(", 0 deviations"), std::string::npos) << out();
+    ASSERT_EQ(run("light info '" + file.string() + "'"), 0) << err();
+    EXPECT_EQ(out().find("hint"), std::string::npos) << out();
   }
 }
 
-TEST_F(DataTest, Normals) { EXPECT_EQ(run("ndf '" + (data / "normals.exr").string() + "' -o ndf"), 0) << text("err"); }
+TEST_F(DataTest, Normals) { EXPECT_EQ(run("ndf '" + (data / "normals.exr").string() + "' -o ndf"), 0) << err(); }
 
 TEST_F(DataTest, Renders) {
-  EXPECT_EQ(run("render --size 16x16 --samples 1"), 0) << text("err");
+  EXPECT_EQ(run("render --size 16x16 --samples 1"), 0) << err();
   EXPECT_TRUE(fs::exists(folder_ / "render.exr"));
-  EXPECT_EQ(run("render '" + (data / "scene.json").string() + "' --size 16x12 --samples 1 -o scene.png"), 0)
-      << text("err");
+  EXPECT_EQ(run("render '" + (data / "scene.json").string() + "' --size 16x12 --samples 1 -o scene.png"), 0) << err();
 }
 
 // A program that was copied somewhere has none.
 TEST_F(DataTest, ThatIsNotThere) {
   fs::create_directory(folder_ / "bin");
   fs::copy_file(GONIO_TOOL, folder_ / "bin/gonio");
-  const int status = std::system(("cd '" + folder_.path().string() + "' && bin/gonio render >out 2>err").c_str());
-  EXPECT_EQ(WEXITSTATUS(status), 1);
+  EXPECT_EQ(test::run_in(folder_.path(), "bin/gonio render >.out 2>.err"), 1);
   for (const char* part :
        {"gonio render: SCENE: found none, ", "/data", "/share/gonio/data", "expected SCENE.json or --material FILE"})
-    EXPECT_NE(text("err").find(part), std::string::npos) << text("err");
+    EXPECT_NE(err().find(part), std::string::npos) << err();
   EXPECT_FALSE(fs::exists(folder_ / "render.exr"));
 }
 

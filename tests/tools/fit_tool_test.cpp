@@ -1,13 +1,11 @@
 // Runs `gonio fit`, and the verbs that read what it writes, as a user does.
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <sys/wait.h>
 
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/brdf/table/table.h>
@@ -16,6 +14,7 @@
 #include <gonio/mapping/base/error.h>
 
 #include "tests/support/table_files.h"
+#include "tests/support/tool_fixture.h"
 
 namespace gonio {
 namespace {
@@ -23,40 +22,12 @@ namespace {
 constexpr const char* one_lobe = "ggx:alpha=0.4,F0=0.2/0.15/0.1+lambert:albedo=0.3/0.2/0.1";
 constexpr const char* two_lobes = "ggx:alpha=0.7,F0=0.3+ggx:alpha=0.2,F0=0.1+lambert:albedo=0.1";
 
-struct Outcome {
-  int code;  // exit status, or -1 if the program crashed
-  std::string out, err;
-};
-
-class FitToolTest : public testing::Test {
+class FitToolTest : public test::ToolFixture {
  protected:
-  std::filesystem::path path(const std::string& name) const { return folder_.path() / name; }
-
   /// A table of 24 x 24 x 36 cells.
   void write_table(const std::string& name, const char* model) const {
     write_mbsdf(path(name), synthesize_mbsdf(parse_model(model), 24, 36));
   }
-
-  Outcome execute(const std::string& arguments) const {
-    const std::string command =
-        "cd '" + folder_.path().string() + "' && '" GONIO_TOOL "' " + arguments + " >.out 2>.err";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_bytes(path(".out")), read_bytes(path(".err"))};
-  }
-
-  std::string expect_ok(const std::string& arguments) const {
-    const Outcome run = execute(arguments);
-    EXPECT_EQ(run.code, 0) << arguments << "\n" << run.err;
-    return run.out;
-  }
-
-  void expect_error(const std::string& arguments, const std::string& part) const {
-    const Outcome run = execute(arguments);
-    EXPECT_EQ(run.code, 1) << arguments;
-    EXPECT_NE(run.err.find(part), std::string::npos) << part << "\nin " << run.err;
-  }
-
-  test::TemporaryFolder folder_;
 };
 
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
@@ -239,10 +210,9 @@ TEST_F(FitToolTest, EveryVerbRefusesHostileJson) {
           "render " + in + " -o out.exr", "render --material " + in + " -o out.exr", "compare " + in + " -o out",
           "report --merge " + in + " -o out"})
       expect_error(verb, part);
-    const Outcome run = execute("validate " + in);
-    EXPECT_EQ(run.code, 1);
+    EXPECT_EQ(run("validate " + in), 1);
     const std::string message = part;
-    EXPECT_TRUE(contains(run.out, message.substr(message.find(": ") + 2))) << run.out;
+    EXPECT_TRUE(contains(out(), message.substr(message.find(": ") + 2))) << out();
     std::ofstream(path("fit.json")) << to_json(parse_model(one_lobe));
     expect_error("report fit.json --stability " + in + " -o out", part);
   }

@@ -1,16 +1,15 @@
 // Runs the verb ndf of the program GONIO_TOOL as a user does.
 
 #include <algorithm>
-#include <cstdlib>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <sys/wait.h>
 
 #include <gonio/brdf/ndf/image/disk_image_file.h>
 
 #include "tests/support/ndf_cases.h"
 #include "tests/support/table_files.h"
+#include "tests/support/tool_fixture.h"
 
 namespace gonio {
 namespace {
@@ -18,14 +17,9 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-class NdfTool : public testing::Test {
+class NdfTool : public test::ToolFixture {
  protected:
-  int run(const std::string& arguments) const {
-    const int status = std::system(
-        ("cd '" + folder_.path().string() + "' && '" GONIO_TOOL "' ndf " + arguments + " >out 2>err").c_str());
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-  std::string text(const std::string& name) const { return test::file_bytes(folder_ / name); }
+  int run(const std::string& arguments) const { return ToolFixture::run("ndf " + arguments); }
   json result(const std::string& folder) const { return json::parse(text(folder + "/ndf.json")); }
 
   /// Pictures, image files and texts are all there and not empty.
@@ -39,15 +33,13 @@ class NdfTool : public testing::Test {
                 std::string::npos);  // PNG's magic number
     }
   }
-
-  test::TemporaryFolder folder_;
 };
 
 TEST_F(NdfTool, AnImage) {
   DiskImage image = rasterise(128, test::GgxNdf{0.2, 0.5});
   for (float& value : image.values) value *= 3;
   save_disk_image(folder_ / "in.exr", image, "D");
-  ASSERT_EQ(run("in.exr -o out_dir"), 0) << text("err");
+  ASSERT_EQ(run("in.exr -o out_dir"), 0) << err();
   expect_files("out_dir", false);
   const json j = result("out_dir");
   EXPECT_NEAR(j["projected_area_before"].get<double>(), 3, 0.01);
@@ -60,13 +52,13 @@ TEST_F(NdfTool, AnImage) {
 
 TEST_F(NdfTool, TablesOfEachFormat) {
   test::write_file(folder_ / "a.mbsdf", test::make_mbsdf(1, 6, 8, std::vector<float>(3 * 6 * 6 * 8, 0.3f)));
-  ASSERT_EQ(run("a.mbsdf -o a --size 64"), 0) << text("err");
+  ASSERT_EQ(run("a.mbsdf -o a --size 64"), 0) << err();
   expect_files("a", true);
   EXPECT_FALSE(result("a").contains("file_ndf"));
   EXPECT_EQ(result("a")["kind"], "mbsdf");
 
   test::write_file(folder_ / "b.bsdf", test::make_rgl().bytes());
-  ASSERT_EQ(run("b.bsdf -o b --size 64"), 0) << text("err");
+  ASSERT_EQ(run("b.bsdf -o b --size 64"), 0) << err();
   expect_files("b", true);
   const json file = result("b")["file_ndf"];
   // ndf = 1 everywhere: its integral with the cosine is pi.
@@ -89,10 +81,8 @@ TEST_F(NdfTool, SynthesisedGgx) {
         Case{1, "ggx:alpha=1,F0=0.04", "a.mbsdf", "--measured-to 50"}}) {
     SCOPED_TRACE(std::string(c.model) + " " + c.file + " " + c.options);
     const std::string file = c.file;
-    const std::string synth =
-        "cd '" + folder_.path().string() + "' && '" GONIO_TOOL "' synth " + c.model + " -o " + file + " " + c.options;
-    ASSERT_EQ(std::system(synth.c_str()), 0);
-    ASSERT_EQ(run(file + " -o a --size 32"), 0) << text("err");
+    ASSERT_EQ(ToolFixture::run(std::string("synth ") + c.model + " -o " + file + " " + c.options), 0) << err();
+    ASSERT_EQ(run(file + " -o a --size 32"), 0) << err();
     const json j = result("a"), radial = j["radial"];
     EXPECT_NEAR(radial["alpha_ggx"].get<double>() / c.alpha, 1, 0.01);
     EXPECT_NEAR(radial["alpha_ggx_of_peak"].get<double>() / c.alpha, 1, 0.01);
@@ -114,7 +104,7 @@ TEST_F(NdfTool, MeasuredRgl) {
   if (test::test_data().empty()) GTEST_SKIP() << "GONIO_TEST_DATA is not set";
   for (const char* name : {"cg_sunflower_rgb", "satin_rosaline_rgb", "paper_white_rgb", "cc_iris_purple_gem_rgb"}) {
     const std::string path = (test::test_data() / "rgl" / (std::string(name) + ".bsdf")).string();
-    ASSERT_EQ(run("'" + path + "' --size 64 -o " + name), 0) << text("err");
+    ASSERT_EQ(run("'" + path + "' --size 64 -o " + name), 0) << err();
     const json j = result(name), file = j["file_ndf"];
     EXPECT_NEAR(j["projected_area_after"].get<double>(), 1, 1e-6);
     EXPECT_NEAR(file["projected_area_as_stored"].get<double>(), 1, 0.01);
@@ -126,7 +116,7 @@ TEST_F(NdfTool, MeasuredRgl) {
 TEST_F(NdfTool, RefusesWithOneLine) {
   const auto refused = [&](const std::string& arguments, const std::string& part) {
     EXPECT_EQ(run(arguments), 1) << arguments;
-    const std::string error = text("err");
+    const std::string error = err();
     EXPECT_NE(error.find(part), std::string::npos) << error;
     EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 1) << error;
     EXPECT_FALSE(fs::exists(folder_ / "none"));

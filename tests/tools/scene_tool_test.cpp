@@ -1,12 +1,10 @@
 // `gonio convert --scene`, run as a user does.
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <sys/wait.h>
 
 #include <gonio/brdf/build/budget/incidence_profile.h>
 #include <gonio/brdf/exr/stack_file.h>
@@ -15,21 +13,15 @@
 #include <gonio/mapping/stack/packed_stack.h>
 
 #include "tests/support/table_files.h"
+#include "tests/support/tool_fixture.h"
 
 namespace gonio {
 namespace {
 
 using nlohmann::json;
 
-struct Outcome {
-  int code;  // exit status, or -1 if the program crashed
-  std::string out, err;
-};
-
-class SceneToolTest : public testing::Test {
+class SceneToolTest : public test::ToolFixture {
  protected:
-  std::filesystem::path path(const std::string& name) const { return folder_.path() / name; }
-
   void write_table(const std::string& name, const std::string& model) const {
     write_mbsdf(path(name), synthesize_mbsdf(parse_model(model), 30, 36));
   }
@@ -39,31 +31,16 @@ class SceneToolTest : public testing::Test {
                      json{{"format", "gonio scene"}, {"version", 1}, {"materials", materials}}.dump());
   }
 
-  Outcome execute(const std::string& arguments) const {
-    const std::string command =
-        "cd '" + folder_.path().string() + "' && '" GONIO_TOOL "' convert " + arguments + " >.out 2>.err";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_bytes(path(".out")), read_bytes(path(".err"))};
-  }
-
-  std::string expect_ok(const std::string& arguments) const {
-    const Outcome run = execute(arguments);
-    EXPECT_EQ(run.code, 0) << arguments << "\n" << run.err;
-    return run.out;
-  }
-
+  int run(const std::string& arguments) const { return ToolFixture::run("convert " + arguments); }
+  std::string expect_ok(const std::string& arguments) const { return ToolFixture::expect_ok("convert " + arguments); }
   void expect_error(const std::string& arguments, const std::string& part) const {
-    const Outcome run = execute(arguments);
-    EXPECT_EQ(run.code, 1) << arguments;
-    EXPECT_NE(run.err.find(part), std::string::npos) << part << "\nin " << run.err;
+    ToolFixture::expect_error("convert " + arguments, part);
     EXPECT_FALSE(std::filesystem::exists(path("stacks"))) << arguments;
   }
 
   json summary(const std::string& folder = "stacks") const {
     return json::parse(read_bytes(path(folder + "/scene-budget.json")));
   }
-
-  test::TemporaryFolder folder_;
 };
 
 TEST_F(SceneToolTest, NamesWhatIsWrongInAManifest) {
@@ -135,12 +112,10 @@ TEST_F(SceneToolTest, AMaterialThatFailsCostsTheOthersNothing) {
   write_scene({{{"name", "missing"}, {"file", "none.mbsdf"}, {"share", 1}},
                {{"name", "a"}, {"file", "a.mbsdf"}, {"share", 2}},
                {{"name", "bad"}, {"file", "bad.mbsdf"}, {"share", 1}}});
-  const Outcome run = execute("--scene scene.json --budget 60kB -o stacks");
-  EXPECT_EQ(run.code, 1);
-  EXPECT_NE(run.err.find("gonio convert: 2 of 3 inputs failed: none.mbsdf: no such file; bad.mbsdf: "),
-            std::string::npos)
-      << run.err;
-  EXPECT_NE(run.out.find("written: stacks/a.exr\nwritten: stacks/scene-budget.json\n"), std::string::npos) << run.out;
+  EXPECT_EQ(run("--scene scene.json --budget 60kB -o stacks"), 1);
+  EXPECT_NE(err().find("gonio convert: 2 of 3 inputs failed: none.mbsdf: no such file; bad.mbsdf: "), std::string::npos)
+      << err();
+  EXPECT_NE(out().find("written: stacks/a.exr\nwritten: stacks/scene-budget.json\n"), std::string::npos) << out();
   EXPECT_GT(load_bsdf(path("stacks/a.exr")).bytes(), 0u);
   EXPECT_FALSE(std::filesystem::exists(path("stacks/bad.exr")));
   const json result = summary();

@@ -12,7 +12,6 @@
 #include <nlohmann/json.hpp>
 #include <sys/stat.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <gonio/brdf/build/stack/bsdf_options.h>
 #include <gonio/brdf/exr/stack_file.h>
@@ -20,6 +19,7 @@
 #include <gonio/mapping/base/bytes.h>
 
 #include "tests/support/table_files.h"
+#include "tests/support/tool_fixture.h"
 
 namespace gonio {
 namespace {
@@ -57,31 +57,19 @@ bool is_progress(const std::string& line) {
          line.substr(line.size() - 2) == " s";
 }
 
-class ToolTest : public testing::Test {
+class ToolTest : public test::ToolFixture {
  protected:
-  ToolTest() {
-    const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
-    std::string name = std::string(test.test_suite_name()) + "_" + test.name();
-    for (char& c : name) c = c == '/' ? '_' : c;
-    folder_ = fs::path(testing::TempDir()) / (name + "_" + std::to_string(getpid()));
-    fs::create_directories(folder_);
-  }
-  ~ToolTest() override { fs::remove_all(folder_); }
-
-  fs::path path(const std::string& name) const { return folder_ / name; }
-
   void write(const std::string& name, const std::string& bytes) const {
     fs::remove(path(name));
     std::ofstream(path(name), std::ios::binary) << bytes;
   }
 
-  /// Runs the program in the test's folder.
+  /// Leaves nothing in the folder, unlike run().
   Outcome execute(const std::string& arguments) const {
-    const fs::path out = fs::path(folder_) += ".out", err = fs::path(folder_) += ".err";
-    const std::string command = "cd '" + folder_.string() + "' && '" GONIO_TOOL "' " + arguments + " >'" +
-                                out.string() + "' 2>'" + err.string() + "'";
-    const int status = std::system(command.c_str());
-    Outcome run{WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_bytes(out), {}};
+    const fs::path out = fs::path(folder_.path()) += ".out", err = fs::path(folder_.path()) += ".err";
+    const int code = test::run_in(
+        folder_.path(), "'" GONIO_TOOL "' " + arguments + " >'" + out.string() + "' 2>'" + err.string() + "'");
+    Outcome run{code, read_bytes(out), {}};
     std::istringstream lines(read_bytes(err));
     for (std::string line; std::getline(lines, line);) {
       if (!is_progress(line)) run.errors.push_back(line);
@@ -115,12 +103,10 @@ class ToolTest : public testing::Test {
 
   std::vector<std::string> files() const {
     std::vector<std::string> names;
-    for (const auto& entry : fs::recursive_directory_iterator(folder_)) names.push_back(entry.path().string());
+    for (const auto& entry : fs::recursive_directory_iterator(folder_.path())) names.push_back(entry.path().string());
     std::sort(names.begin(), names.end());
     return names;
   }
-
-  fs::path folder_;
 };
 
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }

@@ -490,9 +490,7 @@ TEST(PhotometricFiles, LoadWithTheirFlux) {
                 remark.c_str(), ms);
   }
   EXPECT_GT(stated, 15);
-  EXPECT_THROW(load_light(std::filesystem::path(std::getenv("GONIO_TEST_DATA")) /
-                          "photometric/mdl-sdk/test_file_format_error.ies"),
-               Error);
+  EXPECT_THROW(load_light(test::test_data() / "photometric/mdl-sdk/test_file_format_error.ies"), Error);
 }
 
 // IES to EULUMDAT to IES, or the other way about. Where an abrupt edge of a type B file was
@@ -531,8 +529,7 @@ TEST(PhotometricFiles, SurviveBothFormats) {
 
 // Files with one fault of a kind that real ones have, and the light that they hold.
 TEST(PhotometricFiles, CasesHoldTheirLight) {
-  const char* data = std::getenv("GONIO_TEST_DATA");
-  if (data == nullptr) GTEST_SKIP() << "GONIO_TEST_DATA is not set";
+  if (test::test_data().empty()) GTEST_SKIP() << "GONIO_TEST_DATA is not set";
   const std::vector<double> five = {0, 22.5, 45, 67.5, 90};
   const double plain = testing::rotational_flux(five, {100, 90, 70, 40, 0});
   const double half = testing::rotational_flux({0, 45, 90}, {100, 200, 0}),
@@ -552,7 +549,7 @@ TEST(PhotometricFiles, CasesHoldTheirLight) {
       {"tilt_name.ldt", testing::rotational_flux({0, 30, 60, 90}, {300, 250, 150, 0})},
       {"uneven_c90.ies", 387.1},  // of the planes by trapezoids; UnevenPlanesKeepTheLight has it exactly
       {"utf16le.ies", plain}};
-  const std::filesystem::path folder = std::filesystem::path(data) / "cases";
+  const std::filesystem::path folder = test::test_data() / "cases";
   for (const auto& [name, expected] : lumens) {
     SCOPED_TRACE(name);
     const Luminaire light = load_light(folder / name);
