@@ -106,6 +106,22 @@ TEST_F(SceneToolTest, RefusesWhatASceneDoesNotTake) {
   expect_error("--scene scene.json --budget 1MiB -o stacks", "a.mbsdf");
 }
 
+// A hundred materials take minutes to build; timeout exits with 124.
+TEST_F(SceneToolTest, AFolderThatTakesNoFilesIsFoundBeforeTheWork) {
+  write_table("a.mbsdf", "ggx:alpha=0.1,F0=0.5+lambert:albedo=0.1");
+  json materials;
+  for (int k = 0; k < 100; ++k) materials.push_back({{"name", std::to_string(k)}, {"file", "a.mbsdf"}, {"share", 1}});
+  write_scene(materials);
+  for (const auto& [folder, part] :
+       {std::pair("/proc", "/proc/scene-budget.json: folder: found one that takes no files"),
+        std::pair("a.mbsdf/stacks", "a.mbsdf/stacks: cannot be made a folder: ")}) {
+    EXPECT_EQ(test::run_in(folder_.path(), "timeout 60 '" GONIO_TOOL "' convert --scene scene.json --budget 9MiB -o " +
+                                               std::string(folder) + " >.out 2>.err"),
+              1);
+    EXPECT_NE(err().find(part), std::string::npos) << err();
+  }
+}
+
 TEST_F(SceneToolTest, AMaterialThatFailsCostsTheOthersNothing) {
   write_table("a.mbsdf", "lambert:albedo=0.5");
   test::write_file(path("bad.mbsdf"), "no table");

@@ -13,6 +13,7 @@
 #include <gonio/mapping/base/error.h>
 
 #include "tools/cli/check_not_input.h"
+#include "tools/cli/check_writable.h"
 #include "tools/cli/failures.h"
 #include "tools/cli/input.h"
 #include "tools/cli/progress.h"
@@ -141,6 +142,7 @@ void convert_scene(const std::filesystem::path& path, std::size_t bytes, const s
   check_outputs(path, all, out);
   Failures failures;
   const std::vector<SceneMaterial> usable = usable_materials(all, failures);
+  if (!usable.empty()) make_folder(out, "scene-budget.json");
   std::vector<SceneMaterial> scene;  // what becomes stacks
   std::vector<std::vector<CompactFit>> fits;
   std::vector<Curve> curves;
@@ -162,9 +164,6 @@ void convert_scene(const std::filesystem::path& path, std::size_t bytes, const s
   const Split split(split_budget(curves, shares, bytes), curves, shares);
   const Split even(split_evenly(curves, bytes), curves, shares);
 
-  std::error_code failed;
-  std::filesystem::create_directories(out, failed);
-  if (failed) throw Error(out.string() + ": cannot be made a folder: " + failed.message());
   ordered_json json{{"format", "gonio scene budget"},
                     {"version", 1},
                     {"gonio", GONIO_VERSION},

@@ -11,6 +11,7 @@
 #include <gonio/mapping/base/bytes.h>
 #include <gonio/mapping/base/error.h>
 
+#include "tools/cli/check_writable.h"
 #include "tools/page/write_page.h"
 
 namespace gonio {
@@ -129,10 +130,7 @@ void write_merged_report(const std::filesystem::path& directory, const std::vect
       pages.resize(report["materials"].size(), relative);
     });
   if (report.is_null()) failures.throw_any(paths.size());
-  std::error_code failed;
-  std::filesystem::create_directories(directory, failed);
-  if (failed)
-    throw Error(directory.string() + ": cannot be made: " + failed.message() + ", expected a folder to write to");
+  make_folder(directory, "report.json");
   write_stream_atomically(directory / "report.json", [&](std::ostream& out) { out << report.dump(1) << '\n'; });
   write_stream_atomically(directory / "report.html", [&](std::ostream& out) { write_page(out, report); });
   write_stream_atomically(directory / "report.md", [&](std::ostream& out) { write_overview(out, report, pages); });

@@ -8,7 +8,6 @@
 
 #include <gonio/fitting/fit/fit.h>
 #include <gonio/mapping/base/atomic_file.h>
-#include <gonio/mapping/base/error.h>
 #include <gonio/mapping/charts/concentric.h>
 
 #include "tools/cli/number.h"
@@ -241,10 +240,6 @@ nlohmann::json to_json(const Report& report) {
 }
 
 void write_report(const std::filesystem::path& directory, const Report& report) {
-  std::error_code failed;
-  std::filesystem::create_directories(directory, failed);
-  if (failed)
-    throw Error(directory.string() + ": cannot be made: " + failed.message() + ", expected a folder to write to");
   for (const MaterialReport& material : report.materials) {
     if (!material.weights.empty())
       write_weights_figure(directory / weights_file(material), material.name, material.weights);

@@ -14,8 +14,8 @@ void add_material(Report& report, MaterialReport material);
 /// The report with stable keys; see docs/guide/tool.md.
 nlohmann::json to_json(const Report& report);
 
-/// Writes report.json, report.md, report.html and the figures of each material into `directory`, which is
-/// made if need be; each file is replaced as a whole. @throws Error if that fails.
+/// Writes report.json, report.md, report.html and the figures of each material into `directory`, which must
+/// exist; each file is replaced as a whole. @throws Error if that fails.
 void write_report(const std::filesystem::path& directory, const Report& report);
 
 /// A table of one line per material and method.

@@ -29,13 +29,6 @@ struct Options {
   CompareOptions compare;
 };
 
-void make_folder(const std::filesystem::path& folder) {
-  std::error_code failed;
-  std::filesystem::create_directories(folder, failed);
-  if (failed) throw Error(folder.string() + ": cannot be made a folder: " + failed.message());
-  check_writable(folder / "compare.html");
-}
-
 std::vector<SamplingMethod> parse_methods(const std::vector<std::string>& names, const Scene& scene) {
   std::vector<SamplingMethod> available, methods;
   std::vector<std::string> available_names;
@@ -74,7 +67,7 @@ void compare(Options& options) {
     const Scene scene = options.choice.load();
     o.methods = parse_methods(options.methods, scene);
     check_not_input(options.out, {"compare.html", "compare.md", "compare.json"}, scene.files);
-    make_folder(options.out);
+    make_folder(options.out, "compare.html");
     comparison = compare_methods(scene, o, [&](double share) { line.update(share); });
   }
   write_comparison(options.out, comparison, name, o);

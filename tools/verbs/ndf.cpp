@@ -19,6 +19,7 @@
 #include <gonio/mapping/base/error.h>
 
 #include "tools/cli/check_not_input.h"
+#include "tools/cli/check_writable.h"
 #include "tools/cli/input.h"
 #include "tools/cli/number.h"
 #include "tools/cli/options.h"
@@ -218,6 +219,7 @@ void ndf(const Options& options) {
   } catch (const Error& error) {
     throw Error(options.in + ": " + error.what());
   }
+  make_folder(options.out, "ndf.json");
   json["projected_area_after"] = projected_area(d);
   json["microsurface_area"] = microsurface_area(d);
   const MedianSlopes slopes = median_slopes(d);
@@ -231,9 +233,6 @@ void ndf(const Options& options) {
   json["seconds"]["g1_processor"] = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   measure_direct(shadowing, d.size, json);
 
-  std::error_code failed;
-  std::filesystem::create_directories(options.out, failed);
-  if (failed) throw Error(options.out.string() + ": cannot be made a folder: " + failed.message());
   save_disk_image(options.out / "ndf.exr", d, "D");
   save_disk_image(options.out / "g1.exr", g1, "G1");
   write_disk_picture(options.out / "ndf.svg", d, ndf_contrast(d), "Normal distribution D of " + source.name, " 1/sr");

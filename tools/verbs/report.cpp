@@ -92,15 +92,6 @@ void check_outputs(const Options& options) {
   check_not_input(options.directory, {"report.html", "report.md", "report.json"}, inputs);
 }
 
-/// Before the long work, so that it is not in vain.
-void make_folder(const std::filesystem::path& directory) {
-  std::error_code failed;
-  std::filesystem::create_directories(directory, failed);
-  if (failed)
-    throw Error(directory.string() + ": cannot be made: " + failed.message() + ", expected a folder to write to");
-  check_writable(directory / "report.html");
-}
-
 void report_verb(const Options& options, const std::vector<std::string>& arguments) {
   check_outputs(options);
   Failures failures;
@@ -115,7 +106,7 @@ void report_verb(const Options& options, const std::vector<std::string>& argumen
   if (!options.stability.empty()) report.stability = read_stability(options.stability);
   report.machine = this_machine();
   const std::vector<std::filesystem::path> inputs = usable_inputs(options, failures);
-  if (!inputs.empty()) make_folder(options.directory);
+  if (!inputs.empty()) make_folder(options.directory, "report.html");
   for (std::size_t k = 0; k < inputs.size(); ++k) {
     ProgressLine line("report " + inputs[k].filename().string() + of_all(k, inputs.size()));
     failures.survives([&] { measure(inputs[k], options.report, line, report); });

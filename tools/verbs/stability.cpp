@@ -14,8 +14,8 @@
 
 #include <gonio/brdf/proof/statistics/chi_square.h>
 #include <gonio/mapping/base/atomic_file.h>
-#include <gonio/mapping/base/error.h>
 
+#include "tools/cli/check_writable.h"
 #include "tools/cli/number.h"
 #include "tools/cli/progress.h"
 #include "tools/stability/figures.h"
@@ -109,9 +109,7 @@ void write_markdown(std::ostream& out, const std::vector<StabilityRow>& rows) {
 }
 
 void stability(const std::filesystem::path& directory) {
-  std::error_code failed;
-  std::filesystem::create_directories(directory, failed);
-  if (failed) throw Error(directory.string() + ": cannot be made a folder: " + failed.message());
+  make_folder(directory, "stability.md");
   std::vector<StabilityRow> rows;
   {
     ProgressLine line("stability");
