@@ -17,19 +17,19 @@ void sample_kernel(const BatchLayout& layout, std::size_t count, const float* co
     HWY_ALIGN float r[block_size];
     for (std::size_t k = 0; k < elements; k += hn::Lanes(D()))
       hn::Store(incident_angle(hn::LoadU(D(), x[0] + k)).r, D(), r + k);
-    draw_stack(layout, elements, Places(layout.angles, elements, x[0], r), x[0], x[1], x[2], y[0], y[1], y[2], y[3]);
+    draw_stack(layout, elements, Brackets(layout.angles, elements, x[0], r), x[0], x[1], x[2], y[0], y[1], y[2], y[3]);
   });
 }
 
 void pdf_kernel(const BatchLayout& layout, std::size_t count, const float* const (&in)[4], float* const (&out)[1]) {
   for_vectors<4, 1>(count, in, out, [&](const V(&x)[4], V(&y)[1]) GONIO_INLINED {
-    y[0] = pdf_stack(layout, place_of(layout.angles, incident_angle(x[0])), x[0], {x[1], x[2], x[3]});
+    y[0] = pdf_stack(layout, bracket_of(layout.angles, incident_angle(x[0])), x[0], {x[1], x[2], x[3]});
   });
 }
 
 void invert_kernel(const BatchLayout& layout, std::size_t count, const float* const (&in)[4], float* const (&out)[3]) {
   for_vectors<4, 3>(count, in, out, [&](const V(&x)[4], V(&y)[3]) GONIO_INLINED {
-    const Inverted s = invert_stack(layout, place_of(layout.angles, incident_angle(x[0])), x[0], {x[1], x[2], x[3]});
+    const Inverted s = invert_stack(layout, bracket_of(layout.angles, incident_angle(x[0])), x[0], {x[1], x[2], x[3]});
     y[0] = s.u, y[1] = s.v, y[2] = s.pdf;
   });
 }

@@ -21,12 +21,12 @@ namespace {
 // One draw at a time. The two diagrams of a displacement are the two lanes of a vector: a draw is one long chain, and
 // the shorter its code the more of the next draw is under way.
 
-/// The diagram before an incident angle, and how far the angle is from there to the next: Stack::Place.
-struct PlaceOfOne {
+/// The diagram before an incident angle, and how far the angle is from there to the next: see Stack::Pair.
+struct BracketOfOne {
   std::ptrdiff_t k;
   float alpha;
 };
-HWY_INLINE PlaceOfOne place_of_one(const BatchAngles& angles, const IncidentAngle& i) {
+HWY_INLINE BracketOfOne bracket_of_one(const BatchAngles& angles, const IncidentAngle& i) {
   if (angles.count == 1) return {0, 0};
   const float r = hn::GetLane(i.r);
   int k = angles.guide[static_cast<std::size_t>(
@@ -37,15 +37,15 @@ HWY_INLINE PlaceOfOne place_of_one(const BatchAngles& angles, const IncidentAngl
 }
 
 /// Colour::eval(): four floats.
-HWY_INLINE void colour_of_one(const BatchColour& colour, const PlaceOfOne& place, float u, float v, float* to) {
+HWY_INLINE void colour_of_one(const BatchColour& colour, const BracketOfOne& bracket, float u, float v, float* to) {
   const V side = set(static_cast<float>(colour.side)), half = set(0.5f);
   const V across = hn::MulSub(set(u), side, half), along = hn::MulSub(hn::Abs(hn::Sub(set(v), half)), side, half);
   const float x = hn::GetLane(hn::Min(hn::Max(across, zero()), hn::Sub(side, set(1))));
   const float y = hn::GetLane(hn::Min(hn::Max(along, zero()), hn::MulSub(side, half, set(1))));
   const int i = std::min(static_cast<int>(x), colour.side - 2), j = std::min(static_cast<int>(y), colour.last_row);
-  const std::ptrdiff_t cell = place.k * colour.layer + j * colour.side + i;
-  mix_cells(colour, colour.values.data() + 4 * cell, x - static_cast<float>(i), y - static_cast<float>(j), place.alpha,
-            to);
+  const std::ptrdiff_t cell = bracket.k * colour.layer + j * colour.side + i;
+  mix_cells(colour, colour.values.data() + 4 * cell, x - static_cast<float>(i), y - static_cast<float>(j),
+            bracket.alpha, to);
 }
 
 /// Numbers of two diagrams, as lanes; of their first lanes, of their second ones.
@@ -123,26 +123,26 @@ bool draw(const BatchLayout& layout, const BatchColour* colour, const glm::vec3&
           BsdfSample& out) {
   if (!(gonio::is_above(wi) && std::isfinite(u.x + u.y))) return false;
   const Frame frame({set(wi.x), set(wi.y), set(wi.z)});
-  const PlaceOfOne place = place_of_one(layout.angles, frame.i);
+  const BracketOfOne bracket = bracket_of_one(layout.angles, frame.i);
   if (colour != nullptr) {
     float rgb[4];
-    colour_of_one(*colour, colour->same_angles ? place : place_of_one(colour->angles, frame.i), u.x, u.y, rgb);
+    colour_of_one(*colour, colour->same_angles ? bracket : bracket_of_one(colour->angles, frame.i), u.x, u.y, rgb);
     out.weight = {rgb[0], rgb[1], rgb[2]};
   }
   const Folded uv = square_to_diagram(set(u.x), set(u.y), layout.half_azimuth);
   const V target = hn::Mul(uv.u, set(layout.whole_mass()));
-  const float* block = layout.values() + place.k * layout.stride;
+  const float* block = layout.values() + bracket.k * layout.stride;
   InDiagrams at;
   if (layout.angles.count > 1 && layout.interpolation == Interpolation::displacement) {
-    at = draw_displaced(layout, block, place.alpha, target, uv.v, uv.rest);
+    at = draw_displaced(layout, block, bracket.alpha, target, uv.v, uv.rest);
     // What takes the pdf from the direction, which vectors of two do not.
     if (HWY_UNLIKELY(hn::GetLane(uv.rest) < tail || hn::GetLane(at.gap) < rim))
       return draw_in_one_lane(layout, colour, wi, u, out);
   } else if (layout.angles.count > 1 && layout.interpolation == Interpolation::blend) {
-    const TwoSources source{block, layout.stride, 1 - place.alpha, place.alpha};
+    const TwoSources source{block, layout.stride, 1 - bracket.alpha, bracket.alpha};
     at = draw_maps<false>(layout, source, source, target, uv.v, uv.rest);
   } else {
-    const OneSource source{block + (layout.angles.count > 1 && !(place.alpha < 0.5f) ? layout.stride : 0)};
+    const OneSource source{block + (layout.angles.count > 1 && !(bracket.alpha < 0.5f) ? layout.stride : 0)};
     at = draw_maps<false>(layout, source, source, target, uv.v, uv.rest);
   }
   const Drawn drawn = from_disk(layout, frame.i.theta, at.r, at.gap, at.phi, uv.sign(), at.pdf);

@@ -185,11 +185,11 @@ MbsdfTable::MbsdfTable(const MbsdfFile& file, const CellPolicies& policies)
   measured_ = MeasuredCells(cell_origins(kinds, policies), n_theta_out_, n_phi_);
 }
 
-struct MbsdfTable::Place {
+struct MbsdfTable::Neighbours {
   Lerp i, o, p;
 };
 
-MbsdfTable::Place MbsdfTable::place_of(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
+MbsdfTable::Neighbours MbsdfTable::neighbours_of(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
   const auto position = [](float angle, float range, int n) {
     return lerp_clamped(angle * (static_cast<float>(n) / range) - 0.5f, n);
   };
@@ -203,13 +203,13 @@ MbsdfTable::Place MbsdfTable::place_of(const glm::vec3& wi, const glm::vec3& wo)
 }
 
 float MbsdfTable::measured(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
-  const Place place = place_of(wi, wo);
-  return measured_.share(place.i, place.o, place.p);
+  const Neighbours between = neighbours_of(wi, wo);
+  return measured_.share(between.i, between.o, between.p);
 }
 
 glm::vec3 MbsdfTable::eval(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
-  const Place place = place_of(wi, wo);
-  const Lerp &i = place.i, &o = place.o, &p = place.p;
+  const Neighbours between = neighbours_of(wi, wo);
+  const Lerp &i = between.i, &o = between.o, &p = between.p;
   const auto row = [&](int in, int out) {
     const glm::vec3* cells = cells_.data() + (static_cast<std::ptrdiff_t>(in) * n_theta_out_ + out) * n_phi_;
     return lerp(cells[p.lo], cells[p.hi], p.t);

@@ -63,9 +63,9 @@ class MbsdfTable {
   int n_phi() const noexcept { return n_phi_; }
 
  private:
-  struct Place;  // between which cells a pair of directions lies
+  struct Neighbours;  // between which cells a pair of directions lies
 
-  Place place_of(const glm::vec3& wi, const glm::vec3& wo) const noexcept;
+  Neighbours neighbours_of(const glm::vec3& wi, const glm::vec3& wo) const noexcept;
 
   int n_theta_in_, n_theta_out_, n_phi_;
   std::vector<glm::vec3> cells_;  // [theta_in][theta_out][phi]; a scalar file three times the same

@@ -132,11 +132,11 @@ MerlTable::MerlTable(const MerlFile& file, const CellPolicies& policies) : n_phi
   measured_ = MeasuredCells(cell_origins(kinds, policies), MerlFile::n_theta_d, n_phi_d_);
 }
 
-struct MerlTable::Place {
+struct MerlTable::Neighbours {
   Lerp h, d, p;
 };
 
-MerlTable::Place MerlTable::place_of(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
+MerlTable::Neighbours MerlTable::neighbours_of(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
   constexpr float per_degree = static_cast<float>(180 / pi<double>);
   const HalfDifference a = half_difference(wi, wo);
   const Lerp h = lerp_clamped(90.0f * std::sqrt(a.theta_h * static_cast<float>(2 / pi<double>)) - 0.5f, 90);
@@ -147,13 +147,13 @@ MerlTable::Place MerlTable::place_of(const glm::vec3& wi, const glm::vec3& wo) c
 }
 
 float MerlTable::measured(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
-  const Place place = place_of(wi, wo);
-  return measured_.share(place.h, place.d, place.p);
+  const Neighbours between = neighbours_of(wi, wo);
+  return measured_.share(between.h, between.d, between.p);
 }
 
 glm::vec3 MerlTable::eval(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
-  const Place place = place_of(wi, wo);
-  const Lerp &h = place.h, &d = place.d, &p = place.p;
+  const Neighbours between = neighbours_of(wi, wo);
+  const Lerp &h = between.h, &d = between.d, &p = between.p;
   const auto row = [&](int ih, int id) {
     const glm::vec3* cells = cells_.data() + (ih * MerlFile::n_theta_d + id) * n_phi_d_;
     return lerp(cells[p.lo], cells[p.hi], p.t);

@@ -84,9 +84,9 @@ class MerlTable {
   int n_phi_d() const noexcept { return n_phi_d_; }
 
  private:
-  struct Place;  // between which cells a pair of directions lies
+  struct Neighbours;  // between which cells a pair of directions lies
 
-  Place place_of(const glm::vec3& wi, const glm::vec3& wo) const noexcept;
+  Neighbours neighbours_of(const glm::vec3& wi, const glm::vec3& wo) const noexcept;
 
   int n_phi_d_;
   std::vector<glm::vec3> cells_;  // [theta_h][theta_d][phi_d]

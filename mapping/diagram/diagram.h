@@ -3,10 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include <gonio/mapping/charts/hemisphere.h>
-#include <gonio/mapping/diagram/azimuth_cell.h>
-#include <gonio/mapping/diagram/radial_cell.h>
-#include <gonio/mapping/numeric/find_cell.h>
+#include <gonio/mapping/diagram/inversion.h>
 
 namespace gonio {
 
@@ -38,7 +35,7 @@ struct DiagramGrid {
 /// Maximum errors, against exact arithmetic on the same lines and densities, epsilon being that of T:
 /// - forward maps: the mass below the position given, taken exactly at one of the values of T next to it,
 ///   differs from the mass asked for by 16 epsilon of the whole, for any grid;
-/// - u_of() 4 epsilon, v_of() 8 epsilon, absolute;
+/// - u of invert() 4 epsilon, v 8 epsilon, absolute;
 /// - pdf() 4 epsilon times the largest density, and 16 epsilon relative to the bilinear density at a
 ///   position within 4 epsilon of the one given.
 ///
@@ -55,38 +52,19 @@ class Diagram {
   ///   is negative or not finite, or all are zero.
   explicit Diagram(const DiagramGrid& grid);
 
-  /// A position between the meridians i and i + 1, and the marginal density there.
-  struct Meridian {
-    int i;
-    T a;     ///< 0 at meridian i, 1 at i + 1
-    T phi;   ///< [rad], in the stored range
-    T mass;  ///< integral of the pdf over r (2 r dr): d(mass)/dphi
-  };
-  /// A position along a meridian, and the pdf [1/sr] there.
-  struct Parallel {
-    T r = T(0), pdf = T(0), gap = 1 - r;  ///< gap: see Polar
-  };
+  /// (u, v) in [0, 1]^2 to the disk; other values are clamped. @param rest 1 - v, to as many digits as are known: next
+  /// to the horizon they decide. The gap is at least `least_gap`.
+  PolarSample<T> sample(T u, T v, T rest) const noexcept { return sample_lines(*this, u, v, rest); }
+  PolarSample<T> sample(T u, T v) const noexcept { return sample(u, v, 1 - v); }
 
-  /// M_C forward, eqs. 20-25: the meridian below which the fraction u of the mass lies. The
-  /// quadratic (eq. 24) is solved in the form without cancellation. u outside [0, 1] is clamped.
-  Meridian meridian_at(T u) const noexcept;
-  /// The meridian through `phi`, clamped to the stored range.
-  Meridian meridian_through(T phi) const noexcept;
-  /// M_C inverse: the u of a meridian.
-  T u_of(const Meridian& m) const noexcept;
+  /// The density at a position, clamped to the stored range.
+  T pdf(Polar<T> at) const noexcept { return pdf_of_lines(*this, at); }
 
-  /// M_D forward, eqs. 10-19: the radius below which the fraction v of the meridian's mass lies. `rest` is 1 - v, to
-  /// as many digits as are known: next to the horizon they decide. The gap is at least `least_gap`.
-  Parallel parallel_at(const Meridian& m, T v, T rest) const noexcept;
-  Parallel parallel_at(const Meridian& m, T v) const noexcept { return parallel_at(m, v, 1 - v); }
-  /// M_D inverse: the v of radius r, clamped to [0, 1].
-  T v_of(const Meridian& m, T r) const noexcept;
-  /// The pdf [1/sr] on a meridian at radius r, clamped to [0, 1], and its gap.
-  T pdf(const Meridian& m, T r, T gap) const noexcept;
-  T pdf(const Meridian& m, T r) const noexcept { return pdf(m, r, 1 - r); }
+  /// The inverse of sample(), exists everywhere; its pdf may be 0.
+  PolarInverse<T> invert(Polar<T> at) const noexcept { return invert_lines(*this, at); }
 
   /// The mass of the stored azimuth: 1/2 for half diagrams, 1 for full ones, to rounding.
-  T mass() const noexcept { return cumulative_phi()[meridians_ - 1]; }
+  T mass() const noexcept { return before(meridians_ - 1); }
   Azimuth azimuth() const noexcept { return azimuth_; }
   int meridians() const noexcept { return meridians_; }
   int parallels() const noexcept { return parallels_; }
@@ -102,95 +80,31 @@ class Diagram {
   /// Whether the meridians and parallels of another diagram are the same.
   bool same_lines(const Diagram& other) const noexcept;
 
- private:
-  template <class U>
-  friend class Blend;
-  template <class U>
-  friend class Displacement;
-
   const T* phi() const noexcept { return values_.data(); }
-  const T* cumulative_phi() const noexcept { return phi() + meridians_; }
   const T* r() const noexcept { return phi() + 2 * meridians_; }
+  T before(int i) const noexcept { return phi()[meridians_ + i]; }         ///< the mass before a meridian
+  T along(int i) const noexcept { return cumulative(i)[parallels_ - 1]; }  ///< the mass along it, U(i, N) of eq. 19
   const T* density(int i) const noexcept { return r() + parallels_ + i * parallels_; }
   /// U(i, j) of eq. 19: the mass of meridian i up to parallel j.
   const T* cumulative(int i) const noexcept { return density(meridians_ + i); }
-  T meridian_mass(int i) const noexcept { return cumulative(i)[parallels_ - 1]; }
-  RadialPlace<T> place_at(const Meridian& m, T v, T rest) const noexcept;
 
+  /// What lies along a position between two meridians, see inversion.h.
+  struct Sums {
+    const T *density0, *density1, *cumulative0, *cumulative1;
+    T w0, w1;
+
+    T density(int j) const noexcept { return w0 * density0[j] + w1 * density1[j]; }
+    T before(int j) const noexcept { return w0 * cumulative0[j] + w1 * cumulative1[j]; }
+  };
+  RowOfSums<T, Sums> row(int i, T a) const noexcept {
+    return {{density(i), density(i + 1), cumulative(i), cumulative(i + 1), 1 - a, a}, r(), parallels_};
+  }
+
+ private:
   Azimuth azimuth_;
   int meridians_, parallels_;
-  std::vector<T> values_;  // phi | cumulative_phi | r | density | cumulative, one block
+  std::vector<T> values_;  // phi | mass before each meridian | r | density | cumulative, one block
 };
-
-/// Whether a cell that ends with the mass `below` before its end is the last one with mass of a meridian with `mass`,
-/// to rounding.
-template <class T>
-bool ends_mass(T below, T mass) noexcept {
-  return below >= mass * (1 - 2 * std::numeric_limits<T>::epsilon());
-}
-
-template <class T>
-typename Diagram<T>::Meridian Diagram<T>::meridian_at(T u) const noexcept {
-  const T target = std::clamp(u, T(0), T(1)) * mass();
-  const int i = find_cell(cumulative_phi(), meridians_, target);
-  const T m0 = meridian_mass(i), m1 = meridian_mass(i + 1);
-  const T width = phi()[i + 1] - phi()[i];
-  const T a = AzimuthCell<T>{width, m0, m1}.invert(target - cumulative_phi()[i]);
-  return {i, a, phi()[i] + a * width, (1 - a) * m0 + a * m1};
-}
-
-template <class T>
-typename Diagram<T>::Meridian Diagram<T>::meridian_through(T angle) const noexcept {
-  const int i = find_cell(phi(), meridians_, angle);
-  const T width = phi()[i + 1] - phi()[i];
-  const T a = std::clamp((angle - phi()[i]) / width, T(0), T(1));
-  return {i, a, phi()[i] + a * width, (1 - a) * meridian_mass(i) + a * meridian_mass(i + 1)};
-}
-
-template <class T>
-T Diagram<T>::u_of(const Meridian& m) const noexcept {
-  const T width = phi()[m.i + 1] - phi()[m.i];
-  const T inside = m.a * width * (meridian_mass(m.i) + m.mass) / 2;
-  return std::min((cumulative_phi()[m.i] + inside) / mass(), T(1));
-}
-
-template <class T>
-RadialPlace<T> Diagram<T>::place_at(const Meridian& m, T v, T rest) const noexcept {
-  const T target = std::clamp(v, T(0), T(1)) * m.mass;
-  const T *u0 = cumulative(m.i), *u1 = cumulative(m.i + 1);
-  const T a = m.a, b = 1 - a;
-  const int j = find_cell_of([=](int k) { return b * u0[k] + a * u1[k]; }, parallels_, target);  // eq. 18
-  const T *d0 = density(m.i), *d1 = density(m.i + 1);
-  const RadialCell<T> cell{r()[j], r()[j + 1] - r()[j], b * d0[j] + a * d1[j], b * d0[j + 1] + a * d1[j + 1]};
-  return RadialPlace<T>::of(cell, r()[j + 1], target - (b * u0[j] + a * u1[j]), rest * m.mass,
-                            ends_mass(b * u0[j + 1] + a * u1[j + 1], m.mass));
-}
-
-template <class T>
-typename Diagram<T>::Parallel Diagram<T>::parallel_at(const Meridian& m, T v, T rest) const noexcept {
-  const RadialPlace<T> p = place_at(m, v, rest).off_end(least_gap<T>);
-  return {p.r(), p.density(), p.gap()};
-}
-
-template <class T>
-T Diagram<T>::v_of(const Meridian& m, T radius) const noexcept {
-  const int j = find_cell(r(), parallels_, radius);
-  const T a = m.a, b = 1 - a;
-  const T *d0 = density(m.i), *d1 = density(m.i + 1);
-  const RadialCell<T> cell{r()[j], r()[j + 1] - r()[j], b * d0[j] + a * d1[j], b * d0[j + 1] + a * d1[j + 1]};
-  const T s = std::clamp((radius - cell.r0) / cell.h, T(0), T(1));
-  const T below = b * cumulative(m.i)[j] + a * cumulative(m.i + 1)[j];
-  return m.mass > 0 ? std::min((below + cell.mass(s)) / m.mass, T(1)) : T(0);
-}
-
-template <class T>
-T Diagram<T>::pdf(const Meridian& m, T radius, T gap) const noexcept {
-  const int j = find_cell(r(), parallels_, radius);
-  const T *d0 = density(m.i), *d1 = density(m.i + 1);
-  const T a = m.a, b = 1 - a;
-  const RadialCell<T> cell{r()[j], r()[j + 1] - r()[j], b * d0[j] + a * d1[j], b * d0[j + 1] + a * d1[j + 1]};
-  return cell.density_at(radius, gap, r()[j + 1]);
-}
 
 extern template class Diagram<float>;
 extern template class Diagram<double>;

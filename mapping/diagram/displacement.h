@@ -1,6 +1,5 @@
 #pragma once
 
-#include <gonio/mapping/charts/polar_map.h>
 #include <gonio/mapping/diagram/diagram.h>
 #include <gonio/mapping/numeric/monotone_root.h>
 
@@ -21,12 +20,13 @@ class Displacement {
   Displacement(const Diagram<T>& first, const Diagram<T>& second, T alpha) noexcept
       : d0_(first), d1_(second), w0_(1 - alpha), w1_(alpha) {}
 
-  /// (u, v) in [0, 1]^2 to the disk. @param rest 1 - v, see Diagram::parallel_at().
+  /// (u, v) in [0, 1]^2 to the disk. @param rest 1 - v, see Diagram::sample().
   PolarSample<T> sample(T u, T v, T rest) const noexcept {
     v = std::max(smallest_v, v);
-    const Meridians m{d0_.meridian_at(u), d1_.meridian_at(u)};
-    const RadialPlace<T> p0 = d0_.place_at(m.first, v, rest).off_end(0),
-                         p1 = d1_.place_at(m.second, v, rest).off_end(0);
+    const T before = std::clamp(u, T(0), T(1));
+    const Meridians m{meridian_at_mass(d0_, before * d0_.mass()), meridian_at_mass(d1_, before * d1_.mass())};
+    const RadialPlace<T> p0 = place_at(d0_.row(m.first.i, m.first.a), m.first.mass, v, rest).off_end(0),
+                         p1 = place_at(d1_.row(m.second.i, m.second.a), m.second.mass, v, rest).off_end(0);
     const T r = w0_ * p0.r() + w1_ * p1.r(), gap = w0_ * p0.gap() + w1_ * p1.gap(),
             phi = w0_ * m.first.phi + w1_ * m.second.phi;
     if (rest < tail || gap < least_gap<T>) {
@@ -56,12 +56,11 @@ class Displacement {
   }
 
  private:
-  using Meridian = typename Diagram<T>::Meridian;
   struct Parallel {
     T r, pdf;
   };
   struct Meridians {
-    Meridian first, second;
+    Meridian<T> first, second;
   };
 
   // Keeps r positive, where the quotient of radii in the density is 0/0 otherwise.
@@ -73,14 +72,14 @@ class Displacement {
   /// `inside` from there on; `slope` is its derivative.
   struct Across {
     const Diagram<T>& d;
-    Meridian at{-1, 0, 0, 0};
+    Meridian<T> at{-1, 0, 0, 0};
     T below = 0, inside = 0, slope = 0, first = 1, last = -1, m0 = 0, m1 = 0;
 
     void move(T phi) noexcept {
       if (!(phi >= first && phi <= last)) {
-        at.i = find_cell(d.phi(), d.meridians_, phi);
+        at.i = find_cell(d.phi(), d.meridians(), phi);
         first = d.phi()[at.i], last = d.phi()[at.i + 1];
-        m0 = d.meridian_mass(at.i), m1 = d.meridian_mass(at.i + 1), below = d.cumulative_phi()[at.i] / d.mass();
+        m0 = d.along(at.i), m1 = d.along(at.i + 1), below = d.before(at.i) / d.mass();
       }
       const T width = last - first;
       at.a = std::clamp((phi - first) / width, T(0), T(1));
@@ -94,25 +93,26 @@ class Displacement {
   /// The same along a meridian: from the pole by radii or, `outer`, from the horizon by gaps.
   struct Along {
     const Diagram<T>& d;
-    const Meridian& m;
+    const Meridian<T>& m;
     bool outer;
     T scale;  // 0 for a meridian without mass
     RadialPlace<T> at{{0, 0, 0, 0}, 0};
     T below = 0, inside = 0, slope = 0, first = 1, last = -1;
 
-    Along(const Diagram<T>& diagram, const Meridian& meridian, bool from_horizon) noexcept
+    Along(const Diagram<T>& diagram, const Meridian<T>& meridian, bool from_horizon) noexcept
         : d(diagram), m(meridian), outer(from_horizon), scale(meridian.mass > 0 ? 1 / meridian.mass : T(0)) {}
 
     void move(T way) noexcept {
       if (!(way >= first && way <= last)) {
-        const int j = find_cell(d.r(), d.parallels_, outer ? 1 - way : way);
-        const T *d0 = d.density(m.i) + j, *d1 = d.density(m.i + 1) + j, *u0 = d.cumulative(m.i),
-                *u1 = d.cumulative(m.i + 1);
-        const T a = m.a, b = 1 - a, r1 = d.r()[j + 1];
-        const RadialCell<T> cell{d.r()[j], r1 - d.r()[j], b * d0[0] + a * d1[0], b * d0[1] + a * d1[1]};
-        const int n = d.parallels_ - 1;
+        const auto row = d.row(m.i, m.a);
+        const auto [j, cell, r1] = row.cell_at(outer ? 1 - way : way);
         at.cell = outer ? cell.from_end(r1) : cell;
-        below = (outer ? b * (u0[n] - u0[j + 1]) + a * (u1[n] - u1[j + 1]) : b * u0[j] + a * u1[j]) * scale;
+        // The mass beyond a cell as a sum of differences: next to the horizon these are the small numbers.
+        const int n = row.parallels - 1;
+        below = (outer ? row.w0 * (row.cumulative0[n] - row.cumulative0[j + 1]) +
+                             row.w1 * (row.cumulative1[n] - row.cumulative1[j + 1])
+                       : row.before(j)) *
+                scale;
         first = outer ? 1 - r1 : cell.r0, last = outer ? 1 - cell.r0 : r1;
       }
       at.s = std::clamp((way - first) / (last - first), T(0), T(1));
@@ -145,7 +145,7 @@ class Displacement {
   }
 
   /// dphi_alpha/du; 0 stands for an infinite slope (a meridian without mass).
-  T slope_phi(const Meridian& a, const Meridian& b) const noexcept {
+  T slope_phi(const Meridian<T>& a, const Meridian<T>& b) const noexcept {
     if ((w0_ > 0 && !(a.mass > 0)) || (w1_ > 0 && !(b.mass > 0))) return 0;
     return (w0_ > 0 ? w0_ * d0_.mass() / a.mass : T(0)) + (w1_ > 0 ? w1_ * d1_.mass() / b.mass : T(0));
   }

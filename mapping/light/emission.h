@@ -59,28 +59,28 @@ class EmissionSampler {
 
 template <class T>
 typename EmissionSampler<T>::Sample EmissionSampler<T>::sample(T u, T v) const noexcept {
-  const auto place = map_.at(u, v);
-  const Vec3<T> w = map_.direction(place);
-  const T pdf = map_.pdf(place);
-  const T correction = pdf > 0 ? map_.theta_linear(place) / pdf : T(0);
+  const auto position = map_.at(u, v);
+  const Vec3<T> w = map_.direction(position);
+  const T pdf = map_.pdf(position);
+  const T correction = pdf > 0 ? map_.theta_linear(position) / pdf : T(0);
   return {w.x * x_ + w.y * y_ + w.z * z_, pdf, static_cast<T>(mapped_flux_) * correction};
 }
 
 template <class T>
 T EmissionSampler<T>::pdf(const Vec3<T>& direction) const noexcept {
   const Vec3<T> local = to_local(direction);
-  return covered(local) ? map_.pdf(map_.place_of(local)) : T(0);
+  return covered(local) ? map_.pdf(map_.position_of(local)) : T(0);
 }
 
 template <class T>
 T EmissionSampler<T>::intensity(const Vec3<T>& direction) const noexcept {
   const Vec3<T> local = to_local(direction);
-  return covered(local) ? static_cast<T>(mapped_flux_) * map_.theta_linear(map_.place_of(local)) : T(0);
+  return covered(local) ? static_cast<T>(mapped_flux_) * map_.theta_linear(map_.position_of(local)) : T(0);
 }
 
 template <class T>
 SquarePoint<T> EmissionSampler<T>::invert(const Vec3<T>& direction) const noexcept {
-  return map_.square_of(map_.place_of(to_local(direction)));
+  return map_.square_of(map_.position_of(to_local(direction)));
 }
 
 extern template class EmissionSampler<float>;

@@ -20,123 +20,98 @@ class PackedStack::Blended {
     w0_ = (1 - alpha) * stack.scale()[k0_], w1_ = alpha * stack.scale()[k1_];
   }
 
-  PolarSample<float> sample(float u, float v, float rest) const noexcept {
-    const int last = stack_.meridians_ - 1;
-    const float angle = std::clamp(u, 0.0f, 1.0f) * below(last);
-    const float *c0 = stack_.cumulative_phi(k0_), *c1 = stack_.cumulative_phi(k1_);
-    const int i = find_cell_of([=, w0 = w0_, w1 = w1_](int k) { return w0 * c0[k] + w1 * c1[k]; }, last + 1, angle);
-    const float* phi = stack_.phi() + i;
-    const AzimuthCell<float> across{phi[1] - phi[0], meridian_mass(i), meridian_mass(i + 1)};
-    const float a = across.invert(angle - below(i));
-    const Rows rows(*this, i, a);
+  PolarSample<float> sample(float u, float v, float rest) const noexcept { return sample_lines(*this, u, v, rest); }
+  float pdf(Polar<float> at) const noexcept { return pdf_of_lines(*this, at); }
+  PolarInverse<float> invert(Polar<float> at) const noexcept { return invert_lines(*this, at); }
 
-    const float mass = rows.mass(), target = std::clamp(v, 0.0f, 1.0f) * mass;
-    const int b = find_cell_of([&](int k) { return rows.start(k); }, stack_.blocks_ + 1, target);
-    const Cells cells(rows, b);
-    const float inside = target - rows.start(b);
-    int j = 0;
-    float sum = 0, before = 0;
-    for (int k = 0; k < block; ++k) {  // the last cell with mass that begins before the target
-      const bool later = cells.mass[k] > 0 && sum < inside;
-      j = later ? k : j, before = later ? sum : before;
-      sum += cells.mass[k];
-    }
-    const bool ends = b * block + j == stack_.parallels_ - 2 || ends_mass(rows.start(b) + before + cells.mass[j], mass);
-    const auto p = RadialPlace<float>::of(cells.cell(j), cells.r[j + 1], inside - before, rest * mass, ends)
-                       .off_end(least_gap<float>);
-    return {{p.r(), phi[0] + a * across.width, p.gap()}, p.density()};
-  }
-
-  float pdf(Polar<float> at) const noexcept {
-    const auto [i, a] = meridian_through(at.phi);
-    const Rows rows(*this, i, a);
-    const int j = find_cell(stack_.r(), stack_.parallels_, at.r);
-    const float* r = stack_.r() + j;
-    const RadialCell<float> cell{r[0], r[1] - r[0], rows.density(j), rows.density(j + 1)};
-    return cell.density_at(at.r, at.gap, r[1]);
-  }
-
-  PolarInverse<float> invert(Polar<float> at) const noexcept {
-    const auto [i, a] = meridian_through(at.phi);
-    const Rows rows(*this, i, a);
-    const float mass = rows.mass(), width = stack_.phi()[i + 1] - stack_.phi()[i];
-    const float angle = below(i) + a * width * (meridian_mass(i) + mass) / 2;
-    const int j = find_cell(stack_.r(), stack_.parallels_, at.r), b = j / block;
-    const Cells cells(rows, b);
-    float before = 0;
-    for (int k = 0; k < j - b * block; ++k) before += cells.mass[k];
-    const RadialCell<float> cell = cells.cell(j - b * block);
-    const float s = std::clamp((at.r - cell.r0) / cell.h, 0.0f, 1.0f);
-    const float v = mass > 0 ? std::min((rows.start(b) + before + cell.mass(s)) / mass, 1.0f) : 0.0f;
-    return {std::min(angle / below(stack_.meridians_ - 1), 1.0f), v, cell.density_at(at.r, at.gap, stack_.r()[j + 1])};
-  }
-
- private:
-  float mix(float a, float b) const noexcept { return w0_ * a + w1_ * b; }
-  /// The mass before a meridian, and along it.
-  float below(int i) const noexcept { return mix(stack_.cumulative_phi(k0_)[i], stack_.cumulative_phi(k1_)[i]); }
-  float meridian_mass(int i) const noexcept {
+  int meridians() const noexcept { return stack_.meridians_; }
+  const float* phi() const noexcept { return stack_.phi(); }
+  float before(int i) const noexcept { return mix(stack_.cumulative_phi(k0_)[i], stack_.cumulative_phi(k1_)[i]); }
+  float along(int i) const noexcept {
     const int last = stack_.blocks_ - 1;
     return mix(stack_.ends(k0_, i)[last], stack_.ends(k1_, i)[last]);
   }
-
-  struct Meridian {
-    int i;
-    float a;
-  };
-  Meridian meridian_through(float angle) const noexcept {
-    const float* phi = stack_.phi();
-    const int i = find_cell(phi, stack_.meridians_, angle);
-    return {i, std::clamp((angle - phi[i]) / (phi[i + 1] - phi[i]), 0.0f, 1.0f)};
-  }
-
-  /// The rows of both diagrams on either side of a meridian, and their weights.
-  struct Rows {
-    const PackedStack& stack;
-    const std::uint16_t *a0, *a1, *b0, *b1;
-    const float *ends_a0, *ends_a1, *ends_b0, *ends_b1;
-    float wa0, wa1, wb0, wb1;
-
-    Rows(const Blended& d, int i, float a) noexcept
-        : stack(d.stack_),
-          a0(stack.codes(d.k0_, i)),
-          a1(stack.codes(d.k0_, i + 1)),
-          b0(stack.codes(d.k1_, i)),
-          b1(stack.codes(d.k1_, i + 1)),
-          ends_a0(stack.ends(d.k0_, i)),
-          ends_a1(stack.ends(d.k0_, i + 1)),
-          ends_b0(stack.ends(d.k1_, i)),
-          ends_b1(stack.ends(d.k1_, i + 1)),
-          wa0(d.w0_ * (1 - a)),
-          wa1(d.w0_ * a),
-          wb0(d.w1_ * (1 - a)),
-          wb1(d.w1_ * a) {}
-
-    float density(int j) const noexcept {
-      return wa0 * decode16(a0[j]) + wa1 * decode16(a1[j]) + wb0 * decode16(b0[j]) + wb1 * decode16(b1[j]);
-    }
-    float end(int b) const noexcept {
-      return wa0 * ends_a0[b] + wa1 * ends_a1[b] + wb0 * ends_b0[b] + wb1 * ends_b1[b];
-    }
-    float start(int b) const noexcept { return b > 0 ? end(b - 1) : 0.0f; }
-    float mass() const noexcept { return end(stack.blocks_ - 1); }
-  };
 
   /// The cells of a block. Those that fill up the last one have no mass.
   struct Cells {
     const float* r;
     float density[block + 1], mass[block];
 
-    Cells(const Rows& rows, int b) noexcept : r(rows.stack.r() + b * block) {
-      for (int k = 0; k < block; ++k) density[k] = rows.density(b * block + k);
-      density[block] = rows.density(b * block + block);
-      for (int k = 0; k < block; ++k) {  // RadialCell::mass(1) without its division
-        const float h = r[k + 1] - r[k];
-        mass[k] = h * (r[k] * (density[k] + density[k + 1]) + h * (density[k] + 2 * density[k + 1]) * (1 / 3.0f));
-      }
-    }
     RadialCell<float> cell(int k) const noexcept { return {r[k], r[k + 1] - r[k], density[k], density[k + 1]}; }
   };
+
+  /// The rows of both diagrams on either side of a position, and their weights.
+  struct Row {
+    const PackedStack& stack;
+    const std::uint16_t *a0, *a1, *b0, *b1;
+    const float *ends_a0, *ends_a1, *ends_b0, *ends_b1;
+    float wa0, wa1, wb0, wb1;
+
+    float density(int j) const noexcept {
+      return wa0 * decode16(a0[j]) + wa1 * decode16(a1[j]) + wb0 * decode16(b0[j]) + wb1 * decode16(b1[j]);
+    }
+    /// The mass before a block.
+    float before_block(int b) const noexcept {
+      return b > 0 ? wa0 * ends_a0[b - 1] + wa1 * ends_a1[b - 1] + wb0 * ends_b0[b - 1] + wb1 * ends_b1[b - 1] : 0.0f;
+    }
+    Cells cells(int b) const noexcept {
+      Cells c;
+      c.r = stack.r() + b * block;
+      for (int k = 0; k < block; ++k) c.density[k] = density(b * block + k);
+      c.density[block] = density(b * block + block);
+      for (int k = 0; k < block; ++k) {  // RadialCell::mass(1) without its division
+        const float h = c.r[k + 1] - c.r[k];
+        c.mass[k] =
+            h * (c.r[k] * (c.density[k] + c.density[k + 1]) + h * (c.density[k] + 2 * c.density[k + 1]) * (1 / 3.0f));
+      }
+      return c;
+    }
+
+    RadialPlace<float> place(float target, float beyond, float mass) const noexcept {
+      const int b = find_cell_of([this](int k) { return before_block(k); }, stack.blocks_ + 1, target);
+      const Cells c = cells(b);
+      const float start = before_block(b), inside = target - start;
+      int j = 0;
+      float sum = 0, before_cell = 0;
+      for (int k = 0; k < block; ++k) {  // the last cell with mass that begins before the target
+        const bool later = c.mass[k] > 0 && sum < inside;
+        j = later ? k : j, before_cell = later ? sum : before_cell;
+        sum += c.mass[k];
+      }
+      const bool last = b * block + j == stack.parallels_ - 2 || ends_mass(start + before_cell + c.mass[j], mass);
+      return RadialPlace<float>::of(c.cell(j), c.r[j + 1], inside - before_cell, beyond, last);
+    }
+    CellOfRow<float> cell_at(float radius) const noexcept {
+      const float* r = stack.r();
+      const int j = find_cell(r, stack.parallels_, radius);
+      return {j, {r[j], r[j + 1] - r[j], density(j), density(j + 1)}, r[j + 1]};
+    }
+    float before(int j) const noexcept {
+      const int b = j / block;
+      const Cells c = cells(b);
+      float sum = before_block(b);
+      for (int k = 0; k < j - b * block; ++k) sum += c.mass[k];
+      return sum;
+    }
+  };
+  Row row(int i, float a) const noexcept {
+    return {stack_,
+            stack_.codes(k0_, i),
+            stack_.codes(k0_, i + 1),
+            stack_.codes(k1_, i),
+            stack_.codes(k1_, i + 1),
+            stack_.ends(k0_, i),
+            stack_.ends(k0_, i + 1),
+            stack_.ends(k1_, i),
+            stack_.ends(k1_, i + 1),
+            w0_ * (1 - a),
+            w0_ * a,
+            w1_ * (1 - a),
+            w1_ * a};
+  }
+
+ private:
+  float mix(float a, float b) const noexcept { return w0_ * a + w1_ * b; }
 
   const PackedStack& stack_;
   int k0_, k1_;

@@ -6,27 +6,6 @@
 #include <gonio/mapping/stack/stack.h>
 
 namespace gonio {
-namespace {
-
-template <class T>
-PolarSample<T> sample_one(const Diagram<T>& diagram, T u, T v, T rest) noexcept {
-  const auto m = diagram.meridian_at(u);
-  const auto p = diagram.parallel_at(m, v, rest);
-  return {{p.r, m.phi, p.gap}, p.pdf};
-}
-
-template <class T>
-PolarInverse<T> invert_one(const Diagram<T>& diagram, Polar<T> at) noexcept {
-  const auto m = diagram.meridian_through(at.phi);
-  return {diagram.u_of(m), diagram.v_of(m, at.r), diagram.pdf(m, at.r, at.gap)};
-}
-
-template <class T>
-T pdf_one(const Diagram<T>& diagram, Polar<T> at) noexcept {
-  return diagram.pdf(diagram.meridian_through(at.phi), at.r, at.gap);
-}
-
-}  // namespace
 
 const char* to_string(Interpolation interpolation) noexcept {
   switch (interpolation) {
@@ -67,14 +46,13 @@ Stack<T>::Stack(const StackGrid& grid, Interpolation interpolation)
 }
 
 template <class T>
-typename Stack<T>::Place Stack<T>::place(T theta_i) const noexcept {
+typename Stack<T>::Pair Stack<T>::pair(T theta_i) const noexcept {
   const auto [k, alpha] = bracket(theta_i_, theta_i);
   const Diagram<T>& first = diagrams_[k];
   if (alpha == 0) return {first, first, 0};
   const Diagram<T>& second = diagrams_[k + 1];
   if (alpha == 1) return {second, second, 0};
-  if (interpolation_ == Interpolation::nearest)
-    return alpha < T(0.5) ? Place{first, first, 0} : Place{second, second, 0};
+  if (interpolation_ == Interpolation::nearest) return alpha < T(0.5) ? Pair{first, first, 0} : Pair{second, second, 0};
   return {first, second, alpha};
 }
 
@@ -82,17 +60,17 @@ template <class T>
 DirectionSample<T> Stack<T>::sample(T theta_i, T u, T v) const noexcept {
   const DiskPoint<T> disk = square_to_disk(u, v);
   const Folded<T> folded = fold(disk.turn, half());
-  const Place at = place(theta_i);
+  const Pair at = pair(theta_i);
   PolarSample<T> s;
   if (at.alpha == 0) {
-    s = sample_one(at.first, folded.u, disk.r2, disk.rest);
+    s = at.first.sample(folded.u, disk.r2, disk.rest);
   } else if (interpolation_ == Interpolation::mixture) {
     const T w0 = 1 - at.alpha;
     const bool first = disk.r2 < w0;
-    s = first ? sample_one(at.first, folded.u, disk.r2 / w0, (w0 - disk.r2) / w0)
-              : sample_one(at.second, folded.u, (disk.r2 - w0) / at.alpha, disk.rest / at.alpha);
+    s = first ? at.first.sample(folded.u, disk.r2 / w0, (w0 - disk.r2) / w0)
+              : at.second.sample(folded.u, (disk.r2 - w0) / at.alpha, disk.rest / at.alpha);
     const Diagram<T>& other = first ? at.second : at.first;
-    s.pdf = (first ? w0 : at.alpha) * s.pdf + (first ? at.alpha : w0) * pdf_one(other, s.at);
+    s.pdf = (first ? w0 : at.alpha) * s.pdf + (first ? at.alpha : w0) * other.pdf(s.at);
   } else if (interpolation_ == Interpolation::blend) {
     s = Blend<T>(at.first, at.second, at.alpha).sample(folded.u, disk.r2, disk.rest);
   } else {
@@ -105,10 +83,10 @@ template <class T>
 T Stack<T>::pdf(T theta_i, const Vec3<T>& wo) const noexcept {
   if (!(wo.z >= 0)) return 0;
   const OnDisk<T> d = to_disk(chart_, half(), theta_i, wo);
-  const Place p = place(theta_i);
-  if (p.alpha == 0) return pdf_one(p.first, d.at) / d.jacobian;
+  const Pair p = pair(theta_i);
+  if (p.alpha == 0) return p.first.pdf(d.at) / d.jacobian;
   if (interpolation_ == Interpolation::mixture)
-    return ((1 - p.alpha) * pdf_one(p.first, d.at) + p.alpha * pdf_one(p.second, d.at)) / d.jacobian;
+    return ((1 - p.alpha) * p.first.pdf(d.at) + p.alpha * p.second.pdf(d.at)) / d.jacobian;
   if (interpolation_ == Interpolation::blend) return Blend<T>(p.first, p.second, p.alpha).pdf(d.at) / d.jacobian;
   return Displacement<T>(p.first, p.second, p.alpha).invert(d.at).pdf / d.jacobian;
 }
@@ -117,13 +95,13 @@ template <class T>
 std::optional<SquareInverse<T>> Stack<T>::invert(T theta_i, const Vec3<T>& wo) const noexcept {
   if (!(wo.z >= 0)) return std::nullopt;
   const auto [at, mirrored, jacobian] = to_disk(chart_, half(), theta_i, wo);
-  const Place p = place(theta_i);
+  const Pair p = pair(theta_i);
   PolarInverse<T> inverse;
   if (p.alpha == 0) {
-    inverse = invert_one(p.first, at);
+    inverse = p.first.invert(at);
   } else if (interpolation_ == Interpolation::mixture) {
     const T w0 = 1 - p.alpha;
-    const PolarInverse<T> a = invert_one(p.first, at), b = invert_one(p.second, at);
+    const PolarInverse<T> a = p.first.invert(at), b = p.second.invert(at);
     // (u, v) hold r_B^2 to about r_B epsilon. Of the two pre-images the one whose direction that moves
     // less is taken, kept on its side of the border between them.
     const T v0 = w0 * a.v, v1 = w0 + p.alpha * b.v;

@@ -76,11 +76,11 @@ class Stack {
  private:
   /// The diagrams that serve an angle: `alpha` of the way from `first` to `second`; alpha is 0 when
   /// one diagram is enough.
-  struct Place {
+  struct Pair {
     const Diagram<T>&first, &second;
     T alpha;
   };
-  Place place(T theta_i) const noexcept;
+  Pair pair(T theta_i) const noexcept;
   bool half() const noexcept { return diagrams_.front().azimuth() == Azimuth::half; }
 
   Interpolation interpolation_;

@@ -14,10 +14,9 @@ double relvar(const DiagramGrid& grid, const std::function<double(Polar<double>)
   constexpr int side = 300;
   double sum = 0, sum2 = 0;
   for (int i = 0; i < side; ++i) {
-    const auto m = d.meridian_at((i + 0.5) / side);
     for (int j = 0; j < side; ++j) {
-      const auto p = d.parallel_at(m, (j + 0.5) / side);
-      const double w = g({p.r, m.phi}) / p.pdf;
+      const auto s = d.sample((i + 0.5) / side, (j + 0.5) / side);
+      const double w = g(s.at) / s.pdf;
       sum += w, sum2 += w * w;
     }
   }

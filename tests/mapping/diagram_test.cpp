@@ -37,12 +37,12 @@ void round_trip(const DiagramGrid& grid, double bound) {
   std::uniform_real_distribution<double> random;
   for (int k = 0; k < 20000; ++k) {
     const T u = static_cast<T>(random(engine)), v = static_cast<T>(random(engine));
-    const auto m = d.meridian_at(u);
-    const auto p = d.parallel_at(m, v);
-    const auto back = d.meridian_through(m.phi);
-    ASSERT_NEAR(static_cast<double>(d.u_of(back)), static_cast<double>(u), bound);
-    ASSERT_NEAR(static_cast<double>(d.v_of(back, p.r)), static_cast<double>(v), bound);
-    ASSERT_NEAR(static_cast<double>(d.pdf(back, p.r) / p.pdf), 1, 50 * bound);
+    const auto s = d.sample(u, v);
+    const auto back = d.invert(s.at);
+    ASSERT_NEAR(static_cast<double>(back.u), static_cast<double>(u), bound);
+    ASSERT_NEAR(static_cast<double>(back.v), static_cast<double>(v), bound);
+    ASSERT_NEAR(static_cast<double>(back.pdf / s.pdf), 1, 50 * bound);
+    ASSERT_EQ(d.pdf(s.at), back.pdf);
   }
 }
 
@@ -64,11 +64,11 @@ TEST(Diagram, PdfIsTheJacobian) {
   constexpr double h = 1e-6;
   for (int k = 0; k < 2000; ++k) {
     const double u = h + (1 - 2 * h) * random(engine), v = h + (1 - 2 * h) * random(engine);
-    const auto a = d.meridian_at(u - h), b = d.meridian_at(u + h), m = d.meridian_at(u);
+    const auto a = meridian_at_mass(d, u - h), b = meridian_at_mass(d, u + h);
     if (a.i != b.i) continue;
-    const double r0 = d.parallel_at(m, v - h).r, r1 = d.parallel_at(m, v + h).r;
+    const double r0 = d.sample(u, v - h).at.r, r1 = d.sample(u, v + h).at.r;
     const double area = (b.phi - a.phi) * (r1 * r1 - r0 * r0);
-    ASSERT_NEAR(d.parallel_at(m, v).pdf * area / (4 * h * h), 1, 2e-3);
+    ASSERT_NEAR(d.sample(u, v).pdf * area / (4 * h * h), 1, 2e-3);
   }
 }
 
@@ -78,10 +78,10 @@ TEST(Diagram, ConstantDensityIsTheIdentity) {
   grid.r = {0, 0.2, 0.21, 1};
   grid.density.assign(12, 7.0);
   const Diagram<double> d(grid);
-  const auto m = d.meridian_at(0.3);
-  EXPECT_NEAR(m.phi, 0.3 * pi<double>, 1e-15);
-  EXPECT_NEAR(d.parallel_at(m, 0.49).r, 0.7, 1e-15);
-  EXPECT_NEAR(d.parallel_at(m, 0.49).pdf, 1 / (2 * pi<double>), 1e-15);
+  const auto s = d.sample(0.3, 0.49);
+  EXPECT_NEAR(s.at.phi, 0.3 * pi<double>, 1e-15);
+  EXPECT_NEAR(s.at.r, 0.7, 1e-15);
+  EXPECT_NEAR(s.pdf, 1 / (2 * pi<double>), 1e-15);
 }
 
 TEST(Diagram, MassAndPdfIntegral) {
@@ -91,11 +91,10 @@ TEST(Diagram, MassAndPdfIntegral) {
     double sum = 0;
     constexpr int side = 1000;
     const double range = azimuth == Azimuth::half ? pi<double> : 2 * pi<double>;
-    for (int i = 0; i < side; ++i) {
-      const auto m = d.meridian_through(static_cast<float>((i + 0.5) / side * range));
+    for (int i = 0; i < side; ++i)
       for (int j = 0; j < side; ++j)
-        sum += d.pdf(m, static_cast<float>((j + 0.5) / side)) * 2 * (j + 0.5) / side / side * range / side;
-    }
+        sum += d.pdf({static_cast<float>((j + 0.5) / side), static_cast<float>((i + 0.5) / side * range)}) * 2 *
+               (j + 0.5) / side / side * range / side;
     EXPECT_NEAR(sum, d.mass(), 1e-4);
   }
 }
@@ -109,18 +108,17 @@ TEST(Diagram, ZeroRegions) {
   const Diagram<float> d(grid);
   for (const float u : {0.0f, 0x1p-24f, 0.25f, 0.5f, 0.77f, 1 - 0x1p-24f, 1.0f})
     for (const float v : {0.0f, 0x1p-24f, 0.3f, 0.5f, 0.9f, 1 - 0x1p-24f, 1.0f}) {
-      const auto m = d.meridian_at(u);
-      const auto p = d.parallel_at(m, v);
-      ASSERT_TRUE(std::isfinite(m.phi) && std::isfinite(p.r) && std::isfinite(p.pdf)) << u << ' ' << v;
-      ASSERT_GE(p.r, 0);
-      ASSERT_LE(p.r, 1);
+      const auto s = d.sample(u, v);
+      ASSERT_TRUE(std::isfinite(s.at.phi) && std::isfinite(s.at.r) && std::isfinite(s.pdf)) << u << ' ' << v;
+      ASSERT_GE(s.at.r, 0);
+      ASSERT_LE(s.at.r, 1);
     }
   std::mt19937 engine(5);
   std::uniform_real_distribution<float> random;
   for (int k = 0; k < 100000; ++k) {
-    const auto m = d.meridian_at(random(engine));
-    const auto p = d.parallel_at(m, random(engine));
-    const bool inside = m.phi > grid.phi[1] && m.phi < grid.phi[2] && p.r > grid.r[1] && p.r < grid.r[2];
+    const float u = random(engine);
+    const Polar<float> at = d.sample(u, random(engine)).at;
+    const bool inside = at.phi > grid.phi[1] && at.phi < grid.phi[2] && at.r > grid.r[1] && at.r < grid.r[2];
     ASSERT_FALSE(inside) << "a draw in the patch without density";
   }
 }
@@ -131,10 +129,7 @@ TEST(Diagram, TwelveDecades) {
     grid.density[k] = std::pow(10.0, -12.0 * static_cast<double>(k % 7) / 6);
   round_trip<double>(grid, 1e-13);
   const Diagram<float> d(grid);
-  for (int k = 0; k <= 1000; ++k) {
-    const auto m = d.meridian_at(static_cast<float>(k) / 1000);
-    ASSERT_TRUE(std::isfinite(d.parallel_at(m, 0.5f).r));
-  }
+  for (int k = 0; k <= 1000; ++k) ASSERT_TRUE(std::isfinite(d.sample(static_cast<float>(k) / 1000, 0.5f).at.r));
 }
 
 TEST(Diagram, TwoLinesAreEnough) {

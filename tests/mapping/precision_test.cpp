@@ -60,32 +60,31 @@ void against_long_double(const DiagramGrid& g, Worst& worst) {
   const auto above = [](float x) { return std::nextafter(x, 9.0f); };
   for (int k = 0; k < 50000; ++k) {
     const float u = random(engine), v = random(engine);
-    const auto m = d.meridian_at(u);
-    const auto p = d.parallel_at(m, v);
+    const Polar<float> s = d.sample(u, v).at;
+    const auto v_of = [&](long double phi, float r) { return static_cast<double>(exact.invert({r, phi}).v); };
     // Forward maps: the mass below the values next to the answer encloses what was asked for.
-    const auto u_below = [&](float phi) { return static_cast<double>(exact.u_of(exact.meridian_through(phi))); };
-    see(worst.phi_mass, outside(u, u_below(below(m.phi)), u_below(above(m.phi))));
+    const auto u_below = [&](float phi) { return static_cast<double>(exact.invert({0, phi}).u); };
+    see(worst.phi_mass, outside(u, u_below(below(s.phi)), u_below(above(s.phi))));
     double low = 1, high = 0, mass = 1;
-    for (const float at : {below(m.phi), m.phi, above(m.phi)}) {
-      const auto near = exact.meridian_through(at);
-      low = std::min(low, static_cast<double>(exact.v_of(near, below(p.r))));
-      high = std::max(high, static_cast<double>(exact.v_of(near, above(p.r))));
-      mass = std::min(mass, static_cast<double>(near.mass));
+    for (const float at : {below(s.phi), s.phi, above(s.phi)}) {
+      low = std::min(low, v_of(at, below(s.r)));
+      high = std::max(high, v_of(at, above(s.r)));
+      mass = std::min(mass, static_cast<double>(meridian_at_angle<long double>(exact, at).mass));
     }
     see(worst.r_mass, outside(v, low, high) * mass);
     // Inverse maps and pdf at a direction that floats hold exactly.
     // (Not beyond the last but one meridian: the last is at pi, as T holds it.)
     const float phi = static_cast<float>(g.phi[g.phi.size() - 2]) * random(engine), r = random(engine);
-    const auto a = d.meridian_through(phi);
-    const auto b = exact.meridian_through(phi);
-    see(worst.u, std::abs(static_cast<double>(exact.u_of(b) - d.u_of(a))));
-    see(worst.v, std::abs(static_cast<double>(exact.v_of(b, r) - d.v_of(a, r))));
-    const double found = d.pdf(a, r), here = static_cast<double>(exact.pdf(b, r));
+    const auto a = d.invert({r, phi});
+    const auto b = exact.invert({r, phi});
+    see(worst.u, std::abs(static_cast<double>(b.u - a.u)));
+    see(worst.v, std::abs(static_cast<double>(b.v - a.v)));
+    const double found = a.pdf, here = static_cast<double>(b.pdf);
     see(worst.pdf, std::abs(here - found) / peak);
     low = high = here;
     for (const long double near_phi : within_4_epsilon(phi, g.phi))
       for (const long double near_r : within_4_epsilon(r, g.r)) {
-        const double there = static_cast<double>(exact.pdf(exact.meridian_through(near_phi), near_r));
+        const double there = static_cast<double>(exact.pdf({near_r, near_phi}));
         low = std::min(low, there), high = std::max(high, there);
       }
     see(worst.pdf_relative, outside(found, low, high) / here);

@@ -63,7 +63,7 @@ proof::Coherence coherence(const EmissionSampler<double>& sampler) {
 TEST(SphereDiagram, PdfIntegratesToOneAndDrawsFollowIt) {
   for (unsigned seed : {1u, 2u, 3u}) {
     const SphereDiagram<double> map(random_grid(seed, seed == 3 ? 0.3 : 0));
-    const auto pdf = [&](const glm::vec3& w) { return map.pdf(map.place_of(Vec3<double>(w))); };
+    const auto pdf = [&](const glm::vec3& w) { return map.pdf(map.position_of(Vec3<double>(w))); };
     const auto result = chi_square([&](double u, double v) { return map.direction(map.at(u, v)); }, pdf, 1000000, seed);
     EXPECT_NEAR(result.pdf_integral, 1, 1e-4);
     EXPECT_TRUE(result.passed(proof::sidak(0.01, 3))) << result.summary();
@@ -74,7 +74,7 @@ TEST(SphereDiagram, PdfIntegratesToOneAndDrawsFollowIt) {
 TEST(SphereDiagram, WrongPdfIsFoundOut) {
   const SphereDiagram<double> map(random_grid());
   const auto wrong = [&](const glm::vec3& w) {
-    return map.pdf(map.place_of(Vec3<double>(w))) * (1 + 0.05 * double(w.x));
+    return map.pdf(map.position_of(Vec3<double>(w))) * (1 + 0.05 * double(w.x));
   };
   const auto result = chi_square([&](double u, double v) { return map.direction(map.at(u, v)); }, wrong, 1000000, 1);
   EXPECT_FALSE(result.passed(1e-6)) << result.summary();
@@ -88,12 +88,12 @@ void check_inverse(const SphereGrid& grid, double tolerance) {
   double worst = 0;
   for (int k = 0; k < 20000; ++k) {
     const T u = static_cast<T>(uniform(random)), v = static_cast<T>(uniform(random));
-    const auto place = map.at(u, v);
-    const Vec3<T> w = map.direction(place);
+    const auto position = map.at(u, v);
+    const Vec3<T> w = map.direction(position);
     EXPECT_NEAR(double(w.x * w.x + w.y * w.y + w.z * w.z), 1, 8 * double(std::numeric_limits<T>::epsilon()));
-    const SquarePoint<T> back = map.square_of(map.place_of(w));
+    const SquarePoint<T> back = map.square_of(map.position_of(w));
     worst = std::max({worst, double(std::abs(back.u - u)), double(std::abs(back.v - v))});
-    EXPECT_NEAR(double(map.pdf(map.place_of(w))), double(map.pdf(place)), 20 * tolerance);
+    EXPECT_NEAR(double(map.pdf(map.position_of(w))), double(map.pdf(position)), 20 * tolerance);
   }
   EXPECT_LT(worst, tolerance);
 }
@@ -147,10 +147,10 @@ TEST(SphereDiagram, ExtremeNumbersStayFinite) {
     const SphereDiagram<float> map(random_grid(11, zeros));
     for (float u : {0.0f, 1e-30f, 0.25f, 0.5f, 1 - 0x1p-24f, 1.0f})
       for (float v : {0.0f, 1e-30f, 0.25f, 0.5f, 1 - 0x1p-24f, 1.0f}) {
-        const auto place = map.at(u, v);
-        const Vec3<float> w = map.direction(place);
+        const auto position = map.at(u, v);
+        const Vec3<float> w = map.direction(position);
         EXPECT_TRUE(std::isfinite(w.x) && std::isfinite(w.y) && std::isfinite(w.z));
-        EXPECT_TRUE(map.pdf(place) >= 0 && std::isfinite(map.theta_linear(place)));
+        EXPECT_TRUE(map.pdf(position) >= 0 && std::isfinite(map.theta_linear(position)));
       }
   }
 }

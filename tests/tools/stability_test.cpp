@@ -71,8 +71,8 @@ double rejection_p(const DiagramGrid& grid, double r_power) {
   proof::Random random(17);
   for (int k = 0; k < draws; ++k) {
     const glm::vec2 x = random.pair();
-    const auto m = diagram.meridian_at(x.x);
-    count(ours, m.phi, std::pow(diagram.parallel_at(m, x.y).r, r_power));
+    const Polar<float> at = diagram.sample(x.x, x.y).at;
+    count(ours, at.phi, std::pow(at.r, r_power));
   }
   for (int k = 0; k < draws;) {
     const double phi = 2 * pi<double> * random(), r = std::sqrt(random());
@@ -166,7 +166,7 @@ TEST(Stability, OperationsDoNotDependOnTheData) {
     for (int k = 0; k < 5000; ++k) {
       const double u = random(), v = random();
       Counted::count = 0;
-      diagram.parallel_at(diagram.meridian_at(u), v);
+      diagram.sample(Counted(u), Counted(v));
       all.add(Counted::count);
     }
   }

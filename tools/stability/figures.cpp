@@ -211,9 +211,8 @@ void write_figure_6(const std::filesystem::path& path) {
       const auto carry = [&](double u, double v) -> std::pair<double, double> {
         if (panel == 0) return {cx + radius * (2 * u - 1), cy - radius * (2 * v - 1)};
         const DiskPoint<double> disk = square_to_disk(u, v);
-        const auto m = diagram.meridian_at(disk.turn);
-        const double r = diagram.parallel_at(m, disk.r2).r;
-        return {cx + radius * r * std::cos(m.phi), cy - radius * r * std::sin(m.phi)};
+        const Polar<double> at = diagram.sample(disk.turn, disk.r2).at;
+        return {cx + radius * at.r * std::cos(at.phi), cy - radius * at.r * std::sin(at.phi)};
       };
       if (panel == 0) {
         out << "<rect x=\"" << cx - radius << "\" y=\"" << cy - radius << "\" width=\"" << 2 * radius << "\" height=\""

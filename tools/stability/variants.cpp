@@ -54,11 +54,6 @@ Polar<T> polar_of(const glm::vec3& w) {
   return {std::sqrt((x * x + y * y) / (length * (length + z))), std::atan2(y, x)};
 }
 
-template <class T>
-T pdf_at(const Diagram<T>& d, Polar<T> p) {
-  return d.pdf(d.meridian_through(p.phi), p.r);
-}
-
 /// The distance of x from the values that `exact` takes at the given points, in ulp of `unit`.
 double distance(Wide x, std::initializer_list<Wide> exact, Wide unit) {
   const auto [low, high] = std::minmax(exact);
@@ -96,12 +91,12 @@ struct Problem {
   }
 
   /// The pdf of the diagram as stored.
-  Wide density(Polar<Wide> p) const { return pdf_at(exact, fold(p, azimuth)); }
-  double density(const glm::vec3& w) const { return pdf_at(middle, fold(polar_of<double>(w), azimuth)); }
+  Wide density(Polar<Wide> p) const { return exact.pdf(fold(p, azimuth)); }
+  double density(const glm::vec3& w) const { return middle.pdf(fold(polar_of<double>(w), azimuth)); }
   /// The blend of the pdfs of both diagrams.
   double blend(const glm::vec3& w) const {
     const Polar<double> p = fold(polar_of<double>(w), azimuth);
-    return (1 - alpha) * pdf_at(middle, p) + alpha * pdf_at(middle_other, p);
+    return (1 - alpha) * middle.pdf(p) + alpha * middle_other.pdf(p);
   }
 
   /// The density that is linear in theta between the parallels (eq. 4), normalised.
@@ -136,12 +131,11 @@ double mass_error(const Problem& p, float u, float v, Polar<float> at) {
   if (!std::isfinite(at.r) || !std::isfinite(at.phi)) return no_digit;
   const Diagram<Wide>& d = p.exact;
   const Wide phi = at.phi, r = at.r, dphi = phi * ulp, dr = r * ulp;
-  const auto m0 = d.meridian_through(phi - dphi), m = d.meridian_through(phi), m1 = d.meridian_through(phi + dphi);
-  const double in_u = distance(u, {d.u_of(m0), d.u_of(m1)}, 1);
-  const double in_v = distance(v,
-                               {d.v_of(m0, r - dr), d.v_of(m0, r + dr), d.v_of(m, r - dr), d.v_of(m, r + dr),
-                                d.v_of(m1, r - dr), d.v_of(m1, r + dr)},
-                               1);
+  const auto inverse = [&](int i, int j) { return d.invert({r + i * dr, phi + j * dphi}); };
+  const auto first = inverse(-1, -1), last = inverse(1, 1);
+  const double in_u = distance(u, {first.u, last.u}, 1);
+  const double in_v =
+      distance(v, {first.v, inverse(1, -1).v, inverse(-1, 0).v, inverse(1, 0).v, inverse(-1, 1).v, last.v}, 1);
   return std::max(in_u, in_v);
 }
 
@@ -185,8 +179,8 @@ Variant of_map(const Shared& p, const char* name, const char* why, const Map& ma
 }
 
 Polar<float> library_map(const Problem& p, float u, float v) {
-  const auto m = p.diagram.meridian_at(u);
-  return {p.diagram.parallel_at(m, v).r, m.phi};
+  const Polar<float> at = p.diagram.sample(u, v).at;
+  return {at.r, at.phi};
 }
 
 /// A variant of the step between disk and hemisphere.
@@ -194,8 +188,7 @@ template <class Forward, class Back>
 Variant of_direction(const Shared& p, const char* name, const char* why, const Forward& forward, const Back& back) {
   Variant v{name, radius_read, radius_bound, why, {}, {}, {}, {}};
   const auto pdf = [p, back](const glm::vec3& w) {
-    const Polar<float> at = fold(back(w), p->azimuth);
-    return static_cast<double>(p->diagram.pdf(p->diagram.meridian_through(at.phi), at.r));
+    return static_cast<double>(p->diagram.pdf(fold(back(w), p->azimuth)));
   };
   const auto place = [p](float a, float b) {
     const Unfolded f = unfold(a, p->azimuth);
@@ -245,9 +238,9 @@ Vec3<T> cartesian(const Diagram<T>& first, const Diagram<T>& second, T alpha, T 
   const bool half = first.azimuth() == Azimuth::half, mirrored = half && turn > T(0.5);
   const T u = !half ? turn : mirrored ? 2 * (1 - turn) : 2 * turn;
   const auto one = [&](const Diagram<T>& d) {
-    const auto m = d.meridian_at(u);
-    const T r = std::min(d.parallel_at(m, v).r, 1 - std::numeric_limits<T>::epsilon() / 2);
-    return polar_to_direction(Polar<T>{r, mirrored ? -m.phi : m.phi});
+    const Polar<T> at = d.sample(u, v).at;
+    const T r = std::min(at.r, 1 - std::numeric_limits<T>::epsilon() / 2);
+    return polar_to_direction(Polar<T>{r, mirrored ? -at.phi : at.phi});
   };
   const Vec3<T> a = one(first), b = one(second), w = (1 - alpha) * a + alpha * b;
   return w / std::sqrt(w.x * w.x + w.y * w.y + w.z * w.z);
@@ -336,8 +329,7 @@ std::vector<Variant> make_variants(const StabilityInput& input) {
     return p->exact_cells.pdf(fold(Polar<float>{static_cast<float>(at.r), static_cast<float>(at.phi)}, p->azimuth));
   };
   const auto float_pdf = [p](const glm::vec3& w) {
-    const Polar<float> at = fold(direction_to_polar(w), p->azimuth);
-    return static_cast<double>(p->diagram.pdf(p->diagram.meridian_through(at.phi), at.r));
+    return static_cast<double>(p->diagram.pdf(fold(direction_to_polar(w), p->azimuth)));
   };
 
   std::vector<Variant> v;

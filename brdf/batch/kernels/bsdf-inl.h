@@ -27,11 +27,11 @@ HWY_INLINE void draw_kernel(const BatchLayout& layout, const BatchColour* colour
       hn::Store(frame.i.theta, d, theta_i + k), hn::Store(frame.i.r, d, r + k);
       hn::Store(frame.cos_phi, d, cos_phi + k), hn::Store(frame.sin_phi, d, sin_phi + k);
     }
-    const Places places(layout.angles, elements, theta_i, r);
+    const Brackets brackets(layout.angles, elements, theta_i, r);
     if constexpr (outputs == 7)
-      find_colours(*colour, elements, colour->same_angles ? places : Places(colour->angles, elements, theta_i, r), x[3],
-                   x[4], y[4], y[5], y[6]);
-    draw_stack(layout, elements, places, theta_i, x[3], x[4], y[0], y[1], y[2], y[3]);
+      find_colours(*colour, elements, colour->same_angles ? brackets : Brackets(colour->angles, elements, theta_i, r),
+                   x[3], x[4], y[4], y[5], y[6]);
+    draw_stack(layout, elements, brackets, theta_i, x[3], x[4], y[0], y[1], y[2], y[3]);
     for (std::size_t k = 0; k < elements; k += hn::Lanes(d)) {
       const V pdf = hn::LoadU(d, y[3] + k), z = hn::LoadU(d, y[2] + k);
       const M asked = hn::And(is_above({hn::LoadU(d, x[0] + k), hn::LoadU(d, x[1] + k), hn::LoadU(d, x[2] + k)}),
@@ -54,7 +54,7 @@ HWY_INLINE void pdf_kernel(const BatchLayout& layout, std::size_t count, const f
   for_vectors<6, 1>(count, in, out, [&](const V(&x)[6], V(&y)[1]) GONIO_INLINED {
     const Frame frame({x[0], x[1], x[2]});
     const V pdf =
-        pdf_stack(layout, place_of(layout.angles, frame.i), frame.i.theta, frame.to_diagram({x[3], x[4], x[5]}));
+        pdf_stack(layout, bracket_of(layout.angles, frame.i), frame.i.theta, frame.to_diagram({x[3], x[4], x[5]}));
     y[0] = hn::IfThenElseZero(hn::And(frame.above, is_above({x[3], x[4], x[5]})), pdf);
   });
 }
@@ -67,13 +67,13 @@ HWY_INLINE void eval_kernel(const BatchLayout& layout, const BatchColour& colour
     for (std::size_t k = 0; k < elements; k += hn::Lanes(d)) {
       const Frame frame({hn::LoadU(d, x[0] + k), hn::LoadU(d, x[1] + k), hn::LoadU(d, x[2] + k)});
       const Direction wo = frame.to_diagram({hn::LoadU(d, x[3] + k), hn::LoadU(d, x[4] + k), hn::LoadU(d, x[5] + k)});
-      const Inverted at = invert_stack(layout, place_of(layout.angles, frame.i), frame.i.theta, wo);
+      const Inverted at = invert_stack(layout, bracket_of(layout.angles, frame.i), frame.i.theta, wo);
       const M valid = hn::And(hn::And(frame.above, is_above(wo)), hn::Gt(at.pdf, zero()));
       hn::Store(frame.i.theta, d, theta_i + k), hn::Store(frame.i.r, d, r + k), hn::Store(at.u, d, u + k),
           hn::Store(at.v, d, v + k);
       hn::Store(hn::IfThenElseZero(valid, hn::Div(at.pdf, hn::Max(wo.z, set(Colour::min_cosine)))), d, scale + k);
     }
-    find_colours(colour, elements, Places(colour.angles, elements, theta_i, r), u, v, y[0], y[1], y[2]);
+    find_colours(colour, elements, Brackets(colour.angles, elements, theta_i, r), u, v, y[0], y[1], y[2]);
     for (float* channel : y)
       for (std::size_t k = 0; k < elements; k += hn::Lanes(d))
         hn::StoreU(hn::Mul(hn::LoadU(d, channel + k), hn::Load(d, scale + k)), d, channel + k);

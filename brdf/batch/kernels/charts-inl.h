@@ -72,13 +72,13 @@ HWY_INLINE Direction to_hemisphere(V r, V gap, SinCos phi) {
 
 /// A point of the disk, phi as its distance from 0, and HalfVectorChart's Jacobian. The gap is at least `rim`, the
 /// least_gap of float.
-struct DiskPlace {
+struct OnDisk {
   V r, gap, phi, jacobian;
 };
 constexpr float rim = 0.5f * 1.1920929e-7f;
 
 /// direction_to_polar().
-HWY_INLINE DiskPlace from_hemisphere(const Direction& w) {
+HWY_INLINE OnDisk from_hemisphere(const Direction& w) {
   const V across = hn::MulAdd(w.x, w.x, hn::Mul(w.y, w.y));
   const V r2 = hn::IfThenElse(hn::Lt(w.z, set(0.5f)), hn::Sub(set(1), w.z), hn::Div(across, hn::Add(set(1), w.z)));
   const V r = hn::Min(hn::Sqrt(r2), set(1));
@@ -130,7 +130,7 @@ struct HalfChart {
             hn::Mul(hn::Mul(hn::Mul(set(4), cos_d), scale), hn::Mul(inverse_d, inverse_d))};
   }
 
-  HWY_INLINE DiskPlace disk(const Direction& wo) const {
+  HWY_INLINE OnDisk disk(const Direction& wo) const {
     const V one = set(1);
     const V x = hn::Add(sin, wo.x), y = wo.y, z = hn::Add(cos, wo.z);
     const V across2 = hn::MulAdd(x, x, hn::Mul(y, y)), across = hn::Sqrt(across2);

@@ -14,10 +14,10 @@ namespace gonio {
 namespace HWY_NAMESPACE {
 inline namespace GONIO_LANES {
 
-/// Colour::eval() of `count` elements, at most a block of whole vectors, from their places among its angles. Each loads
-/// its eight cells as whole RGB triples and mixes them: a third of the loads that gathers of single channels would
-/// make.
-HWY_INLINE void find_colours(const BatchColour& colour, std::size_t count, const Places& places, const float* u,
+/// Colour::eval() of `count` elements, at most a block of whole vectors, from their brackets among its angles. Each
+/// loads its eight cells as whole RGB triples and mixes them: a third of the loads that gathers of single channels
+/// would make.
+HWY_INLINE void find_colours(const BatchColour& colour, std::size_t count, const Brackets& brackets, const float* u,
                              const float* v, float* red, float* green, float* blue) {
   const D d;
   HWY_ALIGN int cells[block_size];
@@ -30,14 +30,14 @@ HWY_INLINE void find_colours(const BatchColour& colour, std::size_t count, const
     const V y = hn::Min(hn::Max(along, zero()), set(static_cast<float>(colour.side / 2 - 1)));
     const VI i = hn::Min(truncated(x), set_int(colour.side - 2));
     const VI j = hn::Min(truncated(y), set_int(colour.last_row));
-    const VI cell = hn::Add(hn::Mul(hn::Load(DI(), places.k + k), set_int(colour.layer)),
+    const VI cell = hn::Add(hn::Mul(hn::Load(DI(), brackets.k + k), set_int(colour.layer)),
                             hn::Add(hn::Mul(j, set_int(colour.side)), i));
     hn::Store(hn::ShiftLeft<2>(cell), DI(), cells + k);
     hn::Store(hn::Sub(x, hn::ConvertTo(d, i)), d, a + k);
     hn::Store(hn::Sub(y, hn::ConvertTo(d, j)), d, b + k);
   }
   for (std::size_t k = 0; k < count; ++k)
-    mix_cells(colour, colour.values.data() + cells[k], a[k], b[k], places.alpha[k], rgb + 4 * k);
+    mix_cells(colour, colour.values.data() + cells[k], a[k], b[k], brackets.alpha[k], rgb + 4 * k);
   for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
     V r, g, w, unused;
     load4(rgb + 4 * k, r, g, w, unused);

@@ -202,26 +202,26 @@ HWY_INLINE void draw_displacement(const BatchLayout& layout, std::size_t count, 
   }
 }
 
-/// Stack::sample() of `count` elements, at most a block of whole vectors, from their places among the diagrams.
-HWY_INLINE void draw_stack(const BatchLayout& layout, std::size_t count, const Places& places, const float* theta_i,
+/// Stack::sample() of `count` elements, at most a block of whole vectors, from their brackets.
+HWY_INLINE void draw_stack(const BatchLayout& layout, std::size_t count, const Brackets& brackets, const float* theta_i,
                            const float* u, const float* v, float* x, float* y, float* z, float* pdf) {
   const D d;
   const DI di;
   DiskBlock disk;
   HWY_ALIGN float sign[block_size];  // of phi
   for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
-    hn::Store(block_of(layout, {hn::Load(di, places.k + k), hn::Load(d, places.alpha + k)}), di, disk.block + k);
+    hn::Store(block_of(layout, {hn::Load(di, brackets.k + k), hn::Load(d, brackets.alpha + k)}), di, disk.block + k);
     const Folded uv = square_to_diagram(hn::LoadU(d, u + k), hn::LoadU(d, v + k), layout.half_azimuth);
     hn::Store(hn::Mul(uv.u, set(layout.whole_mass())), d, disk.target + k), hn::Store(uv.v, d, disk.v + k),
         hn::Store(uv.rest, d, disk.rest + k);
     hn::Store(uv.sign(), d, sign + k);
   }
   if (layout.angles.count == 1 || layout.interpolation == Interpolation::nearest) {
-    draw_single<false>(layout, count, places.alpha, disk);
+    draw_single<false>(layout, count, brackets.alpha, disk);
   } else if (layout.interpolation == Interpolation::blend) {
-    draw_single<true>(layout, count, places.alpha, disk);
+    draw_single<true>(layout, count, brackets.alpha, disk);
   } else {
-    draw_displacement(layout, count, places.alpha, disk);
+    draw_displacement(layout, count, brackets.alpha, disk);
   }
   for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
     const Drawn at = from_disk(layout, hn::LoadU(d, theta_i + k), hn::Load(d, disk.r + k), hn::Load(d, disk.gap + k),

@@ -50,10 +50,10 @@ struct Blended {
 };
 
 /// A cell between meridians or parallels as BatchLayout has it: its number, its group, and its place there.
-struct CellPlace {
+struct CellIndex {
   VI k, group, in_group;
 
-  explicit HWY_INLINE CellPlace(VI cell) : k(cell) {
+  explicit HWY_INLINE CellIndex(VI cell) : k(cell) {
     const V middle = hn::Add(hn::ConvertTo(D(), cell), set(0.5f));
     group = truncated(hn::Mul(middle, set(1.0f / BatchLayout::group)));
     in_group = hn::Sub(cell, hn::Mul(group, set_int(BatchLayout::group)));
@@ -68,11 +68,11 @@ struct DiagramLanes {
   VI block;  // of the diagram, or of the first of two
 
   HWY_INLINE VI index(int part, VI k) const { return hn::Add(hn::Add(block, set_int(part)), k); }
-  HWY_INLINE CellPlace find_phi(V angle) const {
-    return CellPlace(hn::Sub(find(source.values, block, layout.meridians, angle), block));
+  HWY_INLINE CellIndex find_phi(V angle) const {
+    return CellIndex(hn::Sub(find(source.values, block, layout.meridians, angle), block));
   }
-  HWY_INLINE CellPlace find_r(V radius) const {
-    return CellPlace(hn::Sub(find(source.values + layout.r, block, layout.parallels, radius), block));
+  HWY_INLINE CellIndex find_r(V radius) const {
+    return CellIndex(hn::Sub(find(source.values + layout.r, block, layout.parallels, radius), block));
   }
 
   /// A cell between two meridians: where they are, the mass along each, and the mass before the first.
@@ -80,7 +80,7 @@ struct DiagramLanes {
     VI i;
     V phi0, phi1, m0, m1, before;
   };
-  HWY_INLINE Sector sector(const CellPlace& i) const {
+  HWY_INLINE Sector sector(const CellIndex& i) const {
     const VI group = index(layout.meridian_groups, hn::Mul(i.group, set_int(BatchLayout::meridian_group)));
     const VI before = hn::Add(group, i.in_group),
              first = hn::Add(hn::Add(before, i.in_group), set_int(BatchLayout::group + 1));
@@ -93,11 +93,11 @@ struct DiagramLanes {
     Cell cell;
     V before, end;  // of the mass, and the radius
   };
-  HWY_INLINE VI before_in_ring(VI i, const CellPlace& j) const {
+  HWY_INLINE VI before_in_ring(VI i, const CellIndex& j) const {
     const VI g = hn::Add(hn::Mul(i, set_int(layout.along)), j.group);
     return hn::Add(index(layout.parallel_groups, hn::Mul(g, set_int(BatchLayout::parallel_group))), j.in_group);
   }
-  HWY_INLINE Ring ring(VI i, V a, const CellPlace& j) const {
+  HWY_INLINE Ring ring(VI i, V a, const CellIndex& j) const {
     const VI before0 = before_in_ring(i, j);
     const VI before1 = hn::Add(before0, set_int(layout.along * BatchLayout::parallel_group)),
              density = set_int(BatchLayout::group);
@@ -110,7 +110,7 @@ struct DiagramLanes {
 
   /// The mass along the meridian at `a` in a sector from a cell between two parallels on. Differences first: they are
   /// exact.
-  HWY_INLINE V mass_from(const Sector& s, V a, const CellPlace& j) const {
+  HWY_INLINE V mass_from(const Sector& s, V a, const CellIndex& j) const {
     const VI first = before_in_ring(s.i, j),
              second = hn::Add(first, set_int(layout.along * BatchLayout::parallel_group));
     return mix(a, hn::Sub(s.m0, source.value(first)), hn::Sub(s.m1, source.value(second)));
@@ -202,11 +202,11 @@ struct DisplacementLanes {
       const V one = set(1);
       if (!hn::AllTrue(D(), hn::And(hn::Ge(way, first), hn::Le(way, last)))) {
         const V r = hn::IfThenElse(outer, hn::Sub(one, way), way);
-        const CellPlace j = d.find_r(clamp01(r));
+        const CellIndex j = d.find_r(clamp01(r));
         const OneDiagram::Ring ring = d.ring(sector.i, a, j);
         const V r0 = ring.cell.r0, r1 = ring.end;
         const M inner = hn::Lt(r1, one);  // the last cell has nothing behind it
-        const CellPlace next(hn::Add(j.k, hn::IfThenElseZero(hn::RebindMask(DI(), inner), set_int(1))));
+        const CellIndex next(hn::Add(j.k, hn::IfThenElseZero(hn::RebindMask(DI(), inner), set_int(1))));
         const V beyond = hn::IfThenElseZero(inner, hn::Max(d.mass_from(sector, a, next), zero()));
         below = hn::Mul(hn::IfThenElse(outer, beyond, ring.before), scale);
         first = hn::IfThenElse(outer, hn::Sub(one, r1), r0), last = hn::IfThenElse(outer, hn::Sub(one, r0), r1);

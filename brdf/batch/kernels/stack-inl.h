@@ -24,12 +24,12 @@ constexpr std::size_t block_size = 1;
 constexpr std::size_t block_size = 128;
 #endif
 
-/// The diagram before an incident angle, and how far the angle is from there to the next: Stack::Place.
-struct Place {
+/// The diagram before an incident angle, and how far the angle is from there to the next: see Stack::Pair.
+struct Bracket {
   VI k;
   V alpha;
 };
-HWY_INLINE Place place_of(const BatchAngles& angles, const IncidentAngle& i) {
+HWY_INLINE Bracket bracket_of(const BatchAngles& angles, const IncidentAngle& i) {
   if (angles.count == 1) return {hn::Zero(DI()), zero()};
   const V part = hn::Mul(i.r, set(BatchAngles::guide_parts));
   VI k = at(angles.guide.data(), hn::Min(truncated(part), set_int(BatchAngles::guide_parts - 1)));
@@ -43,50 +43,50 @@ HWY_INLINE Place place_of(const BatchAngles& angles, const IncidentAngle& i) {
 }
 
 /// Those of `count` elements.
-struct Places {
+struct Brackets {
   HWY_ALIGN int k[block_size];
   HWY_ALIGN float alpha[block_size];
 
-  HWY_INLINE Places(const BatchAngles& angles, std::size_t count, const float* theta_i, const float* r) {
+  HWY_INLINE Brackets(const BatchAngles& angles, std::size_t count, const float* theta_i, const float* r) {
     const D d;
     for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
-      const Place place = place_of(angles, {hn::LoadU(d, theta_i + i), hn::LoadU(d, r + i)});
-      hn::Store(place.k, DI(), k + i), hn::Store(place.alpha, d, alpha + i);
+      const Bracket bracket = bracket_of(angles, {hn::LoadU(d, theta_i + i), hn::LoadU(d, r + i)});
+      hn::Store(bracket.k, DI(), k + i), hn::Store(bracket.alpha, d, alpha + i);
     }
   }
 };
 
 /// The block of the diagram before an incident angle, or, for `nearest`, of the closer one.
-HWY_INLINE VI block_of(const BatchLayout& layout, const Place& place) {
-  const VI block = hn::Mul(place.k, set_int(layout.stride));
+HWY_INLINE VI block_of(const BatchLayout& layout, const Bracket& bracket) {
+  const VI block = hn::Mul(bracket.k, set_int(layout.stride));
   if (layout.interpolation != Interpolation::nearest) return block;
-  const auto first_is_closer = hn::RebindMask(DI(), hn::Lt(place.alpha, set(0.5f)));
+  const auto first_is_closer = hn::RebindMask(DI(), hn::Lt(bracket.alpha, set(0.5f)));
   return hn::IfThenElse(first_is_closer, block, hn::Add(block, set_int(layout.stride)));
 }
 
 /// Calls maps(lanes) with what serves a place: one diagram, a blend or a displacement.
 template <class Call>
-HWY_INLINE auto with_lanes(const BatchLayout& layout, const Place& place, const Call& call) {
-  const VI block = block_of(layout, place);
+HWY_INLINE auto with_lanes(const BatchLayout& layout, const Bracket& bracket, const Call& call) {
+  const VI block = block_of(layout, bracket);
   if (layout.angles.count == 1 || layout.interpolation == Interpolation::nearest)
     return call(OneDiagram{layout, {layout.values()}, block});
   if (layout.interpolation == Interpolation::blend)
-    return call(DiagramLanes<Blended>{layout, {layout.values(), layout.stride, place.alpha}, block});
-  return call(DisplacementLanes(layout, block, place.alpha));
+    return call(DiagramLanes<Blended>{layout, {layout.values(), layout.stride, bracket.alpha}, block});
+  return call(DisplacementLanes(layout, block, bracket.alpha));
 }
 
-HWY_INLINE DiskPlace to_disk(const BatchLayout& layout, V theta_i, const Direction& wo) {
-  DiskPlace place = layout.half_chart ? HalfChart(theta_i).disk(wo) : from_hemisphere(wo);
+HWY_INLINE OnDisk to_disk(const BatchLayout& layout, V theta_i, const Direction& wo) {
+  OnDisk disk = layout.half_chart ? HalfChart(theta_i).disk(wo) : from_hemisphere(wo);
   if (!layout.half_azimuth)
-    place.phi = hn::IfThenElse(hn::Lt(wo.y, zero()), hn::Sub(set(2 * pi<float>), place.phi), place.phi);
-  return place;
+    disk.phi = hn::IfThenElse(hn::Lt(wo.y, zero()), hn::Sub(set(2 * pi<float>), disk.phi), disk.phi);
+  return disk;
 }
 
 /// Stack::pdf().
-HWY_INLINE V pdf_stack(const BatchLayout& layout, const Place& place, V theta_i, const Direction& wo) {
-  const DiskPlace disk = to_disk(layout, theta_i, {wo.x, wo.y, hn::Max(wo.z, zero())});
+HWY_INLINE V pdf_stack(const BatchLayout& layout, const Bracket& bracket, V theta_i, const Direction& wo) {
+  const OnDisk disk = to_disk(layout, theta_i, {wo.x, wo.y, hn::Max(wo.z, zero())});
   const V density =
-      with_lanes(layout, place, [&](const auto& lanes) HWY_ATTR { return lanes.pdf(disk.r, disk.gap, disk.phi); });
+      with_lanes(layout, bracket, [&](const auto& lanes) HWY_ATTR { return lanes.pdf(disk.r, disk.gap, disk.phi); });
   return hn::IfThenElseZero(hn::Ge(wo.z, zero()), hn::Div(density, disk.jacobian));
 }
 
@@ -94,10 +94,10 @@ HWY_INLINE V pdf_stack(const BatchLayout& layout, const Place& place, V theta_i,
 struct Inverted {
   V u, v, pdf;
 };
-HWY_INLINE Inverted invert_stack(const BatchLayout& layout, const Place& place, V theta_i, const Direction& wo) {
-  const DiskPlace disk = to_disk(layout, theta_i, {wo.x, wo.y, hn::Max(wo.z, zero())});
+HWY_INLINE Inverted invert_stack(const BatchLayout& layout, const Bracket& bracket, V theta_i, const Direction& wo) {
+  const OnDisk disk = to_disk(layout, theta_i, {wo.x, wo.y, hn::Max(wo.z, zero())});
   const Uniform at =
-      with_lanes(layout, place, [&](const auto& lanes) HWY_ATTR { return lanes.invert(disk.r, disk.gap, disk.phi); });
+      with_lanes(layout, bracket, [&](const auto& lanes) HWY_ATTR { return lanes.invert(disk.r, disk.gap, disk.phi); });
   const Square square = diagram_to_square(at.u, at.v, hn::Lt(wo.y, zero()), layout.half_azimuth);
   const M found = hn::And(hn::Ge(wo.z, zero()), hn::Gt(at.pdf, zero()));
   return {hn::IfThenElseZero(found, square.u), hn::IfThenElseZero(found, square.v),

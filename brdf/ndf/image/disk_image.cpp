@@ -21,17 +21,17 @@ constexpr Node nodes[] = {mapped(-0.949107912342759, 0.129484966168870), mapped(
                           mapped(0.405845151377397, 0.381830050505119),  mapped(0.741531185599394, 0.279705391489277),
                           mapped(0.949107912342759, 0.129484966168870)};
 
-enum class Place { inside, cut, outside };
+enum class Coverage { inside, cut, outside };
 
-Place place_of(const PixelBounds& p) noexcept {
+Coverage coverage_of(const PixelBounds& p) noexcept {
   const double near_x = std::max({p.x0, -p.x1, 0.0}), near_y = std::max({p.y0, -p.y1, 0.0});
   const double far_x = std::max(p.x1, -p.x0), far_y = std::max(p.y1, -p.y0);
-  if (near_x * near_x + near_y * near_y >= 1) return Place::outside;
-  return far_x * far_x + far_y * far_y < 1 ? Place::inside : Place::cut;
+  if (near_x * near_x + near_y * near_y >= 1) return Coverage::outside;
+  return far_x * far_x + far_y * far_y < 1 ? Coverage::inside : Coverage::cut;
 }
 
-double mean(const PixelBounds& p, Place place, const std::function<double(const Vec3<double>&)>& density) {
-  if (place == Place::inside) {
+double mean(const PixelBounds& p, Coverage coverage, const std::function<double(const Vec3<double>&)>& density) {
+  if (coverage == Coverage::inside) {
     double sum = 0;
     for (const Node& i : nodes)
       for (const Node& j : nodes) {
@@ -65,7 +65,7 @@ double sum(const DiskImage& image, const Function& function) {
     for (int column = 0; column < image.size; ++column) {
       const PixelBounds p = pixel_bounds(image.size, static_cast<int>(row), column);
       const float value = image.at(static_cast<int>(row), column);
-      if (value != 0 && place_of(p) != Place::outside) rows[row] += static_cast<double>(value) * function(p);
+      if (value != 0 && coverage_of(p) != Coverage::outside) rows[row] += static_cast<double>(value) * function(p);
     }
   });
   double total = 0;
@@ -95,9 +95,9 @@ DiskImage rasterise(int size, const std::function<double(const Vec3<double>&)>& 
   parallel_for(static_cast<std::size_t>(size), [&](std::size_t row) {
     for (int column = 0; column < size; ++column) {
       const PixelBounds p = pixel_bounds(size, static_cast<int>(row), column);
-      const Place place = place_of(p);
-      if (place != Place::outside)
-        image.at(static_cast<int>(row), column) = static_cast<float>(mean(p, place, density));
+      const Coverage coverage = coverage_of(p);
+      if (coverage != Coverage::outside)
+        image.at(static_cast<int>(row), column) = static_cast<float>(mean(p, coverage, density));
     }
   });
   return image;
@@ -138,7 +138,7 @@ double normalise(DiskImage& ndf) {
   for (int row = 0; row < ndf.size; ++row)
     for (int column = 0; column < ndf.size; ++column) {
       float& value = ndf.at(row, column);
-      if (place_of(pixel_bounds(ndf.size, row, column)) == Place::outside) {
+      if (coverage_of(pixel_bounds(ndf.size, row, column)) == Coverage::outside) {
         value = 0;
       } else if (!(value >= 0 && std::isfinite(value))) {
         throw Error("normal distribution: row " + std::to_string(row) + ", column " + std::to_string(column) +
