@@ -1,6 +1,8 @@
 #include <utility>
+#include <variant>
 
 #include <gonio/brdf/batch/batch_bsdf.h>
+#include <gonio/brdf/batch/tables/batch_table.h>
 #include <gonio/brdf/bsdf/bsdf.h>
 #include <gonio/brdf/bsdf/material_hints.h>
 #include <gonio/brdf/table/table.h>
@@ -15,9 +17,12 @@ struct Bsdf::State {
         storage(data.storage) {}
 
   const BatchColour* own_colour() const noexcept { return table ? nullptr : &colour; }
+  glm::vec3 table_value(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
+    return std::visit([&](const auto& of) { return eval_one(of, wi, wo); }, table->data());
+  }
   bool draw(const glm::vec3& wi, const glm::vec2& u, BsdfSample& out) const noexcept {
     if (!draw_one(layout, own_colour(), wi, u, out)) return false;
-    if (table) out.weight = table->eval(wi, out.wo) * (out.wo.z / out.pdf);
+    if (table) out.weight = table_value(wi, out.wo) * (out.wo.z / out.pdf);
     return true;
   }
 
@@ -31,15 +36,6 @@ struct Bsdf::State {
   }};
 };
 
-namespace {
-
-void set_at(Arrays3 a, std::size_t k, const glm::vec3& value) noexcept {
-  a.x[k] = value.x, a.y[k] = value.y, a.z[k] = value.z;
-}
-glm::vec3 get_at(ConstArrays3 a, std::size_t k) noexcept { return {a.x[k], a.y[k], a.z[k]}; }
-
-}  // namespace
-
 Bsdf::Bsdf(const BsdfData& data, std::shared_ptr<const BrdfTable> table)
     : state_(std::make_shared<const State>(data, std::move(table))) {}
 
@@ -52,7 +48,7 @@ std::optional<BsdfSample> Bsdf::sample(const glm::vec3& wi, const glm::vec2& u) 
 float Bsdf::pdf(const glm::vec3& wi, const glm::vec3& wo) const noexcept { return pdf_one(state_->layout, wi, wo); }
 
 glm::vec3 Bsdf::eval(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
-  return state_->table ? state_->table->eval(wi, wo) : eval_one(state_->layout, state_->colour, wi, wo);
+  return state_->table ? state_->table_value(wi, wo) : eval_one(state_->layout, state_->colour, wi, wo);
 }
 
 void Bsdf::sample_n(std::size_t count, ConstArrays3 wi, const float* u, const float* v, Arrays3 wo, float* pdf,
@@ -64,8 +60,11 @@ void Bsdf::sample_n(std::size_t count, ConstArrays3 wi, const float* u, const fl
     return;
   }
   draw_many(s.layout, count, {wi.x, wi.y, wi.z, u, v}, {wo.x, wo.y, wo.z, pdf});
-  for (std::size_t k = 0; k < count; ++k)
-    set_at(weight, k, pdf[k] > 0 ? s.table->eval(get_at(wi, k), get_at(wo, k)) * (wo.z[k] / pdf[k]) : glm::vec3(0));
+  s.table->eval_n(count, wi, wo, weight);
+  for (std::size_t k = 0; k < count; ++k) {
+    const float scale = pdf[k] > 0 ? wo.z[k] / pdf[k] : 0.0f;
+    weight.x[k] *= scale, weight.y[k] *= scale, weight.z[k] *= scale;
+  }
 }
 
 void Bsdf::pdf_n(std::size_t count, ConstArrays3 wi, ConstArrays3 wo, float* pdf) const noexcept {
@@ -77,7 +76,7 @@ void Bsdf::eval_n(std::size_t count, ConstArrays3 wi, ConstArrays3 wo, Arrays3 f
     eval_many(state_->layout, state_->colour, count, {wi.x, wi.y, wi.z, wo.x, wo.y, wo.z}, {f_r.x, f_r.y, f_r.z});
     return;
   }
-  for (std::size_t k = 0; k < count; ++k) set_at(f_r, k, state_->table->eval(get_at(wi, k), get_at(wo, k)));
+  state_->table->eval_n(count, wi, wo, f_r);
 }
 
 glm::vec3 Bsdf::albedo(float theta_i) const noexcept { return state_->hints.albedo(theta_i); }

@@ -7,21 +7,13 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include <gonio/brdf/value/arrays3.h>
 #include <gonio/brdf/value/bsdf_data.h>
 #include <gonio/brdf/value/bsdf_sample.h>
 
 namespace gonio {
 
 class BrdfTable;
-
-/// Three arrays: directions by component, or colours by channel.
-struct ConstArrays3 {
-  const float *x, *y, *z;
-};
-struct Arrays3 {
-  float *x, *y, *z;
-  operator ConstArrays3() const noexcept { return {x, y, z}; }
-};
 
 /// A measured material as a renderer holds it: importance sampling, its pdf, and f_r, one direction at a time or many
 /// at once. Loaded from a stack file by load_bsdf() in milliseconds, or made from a table by make_bsdf() in seconds.

@@ -169,19 +169,22 @@ MbsdfTable::MbsdfTable(const MbsdfFile& file, const CellPolicies& policies)
       has_transmission_(file.has_transmission) {
   check_shape(file);
   const auto channels = static_cast<std::size_t>(file.channels);
-  cells_.resize(file.values.size() / channels);
-  std::vector<CellKind> kinds(cells_.size());
-  for (std::size_t i = 0; i < cells_.size(); ++i) {
+  const std::size_t count = file.values.size() / channels;
+  values_.reserve(count + 1);
+  values_.resize(count);
+  std::vector<CellKind> kinds(count);
+  for (std::size_t i = 0; i < count; ++i) {
     const float* value = &file.values[i * channels];
-    cells_[i] = channels == 3 ? glm::vec3(value[0], value[1], value[2]) : glm::vec3(value[0]);
-    kinds[i] = kind_of(cells_[i]);
+    values_[i] = channels == 3 ? glm::vec3(value[0], value[1], value[2]) : glm::vec3(value[0]);
+    kinds[i] = kind_of(values_[i]);
   }
   const auto n_in = static_cast<std::size_t>(n_theta_in_);
   const auto n_out = static_cast<std::size_t>(n_theta_out_);
   const auto n_phi = static_cast<std::size_t>(n_phi_);
   counts_ =
-      repair_cells(cells_, kinds, policies,
+      repair_cells(values_, kinds, policies,
                    {{n_in * n_out, n_phi, 1, false}, {n_in, n_out, n_phi, false}, {1, n_in, n_out * n_phi, false}});
+  values_.emplace_back(0.0f);
   measured_ = MeasuredCells(cell_origins(kinds, policies), n_theta_out_, n_phi_);
 }
 
@@ -211,7 +214,7 @@ glm::vec3 MbsdfTable::eval(const glm::vec3& wi, const glm::vec3& wo) const noexc
   const Neighbours between = neighbours_of(wi, wo);
   const Lerp &i = between.i, &o = between.o, &p = between.p;
   const auto row = [&](int in, int out) {
-    const glm::vec3* cells = cells_.data() + (static_cast<std::ptrdiff_t>(in) * n_theta_out_ + out) * n_phi_;
+    const glm::vec3* cells = values_.data() + (static_cast<std::ptrdiff_t>(in) * n_theta_out_ + out) * n_phi_;
     return lerp(cells[p.lo], cells[p.hi], p.t);
   };
   return lerp(lerp(row(i.lo, o.lo), row(i.lo, o.hi), o.t), lerp(row(i.hi, o.lo), row(i.hi, o.hi), o.t), i.t);

@@ -62,13 +62,17 @@ class MbsdfTable {
   int n_theta_out() const noexcept { return n_theta_out_; }
   int n_phi() const noexcept { return n_phi_; }
 
+  /// [theta_in][theta_out][phi] in 1/sr, a scalar file three times the same, and a spare one: of each, four floats may
+  /// be loaded.
+  const std::vector<glm::vec3>& values() const noexcept { return values_; }
+
  private:
   struct Neighbours;  // between which cells a pair of directions lies
 
   Neighbours neighbours_of(const glm::vec3& wi, const glm::vec3& wo) const noexcept;
 
   int n_theta_in_, n_theta_out_, n_phi_;
-  std::vector<glm::vec3> cells_;  // [theta_in][theta_out][phi]; a scalar file three times the same
+  std::vector<glm::vec3> values_;
   CellCounts counts_;
   bool has_transmission_;
   MeasuredCells measured_;

@@ -106,13 +106,14 @@ MerlTable::MerlTable(const MerlFile& file, const CellPolicies& policies) : n_phi
   if (file.values.size() != 3 * n) {
     throw Error("values: found " + std::to_string(file.values.size()) + ", expected " + std::to_string(3 * n));
   }
-  cells_.resize(n);
+  values_.reserve(n + 1);
+  values_.resize(n);
   std::vector<CellKind> kinds(n);
   for (std::size_t i = 0; i < n; ++i) {
     for (int c = 0; c < 3; ++c) {
-      cells_[i][c] = static_cast<float>(file.values[static_cast<std::size_t>(c) * n + i] * merl_scale[c]);
+      values_[i][c] = static_cast<float>(file.values[static_cast<std::size_t>(c) * n + i] * merl_scale[c]);
     }
-    kinds[i] = kind_of(cells_[i]);
+    kinds[i] = kind_of(values_[i]);
     if (kinds[i] == CellKind::negative) kinds[i] = CellKind::missing;
   }
   std::size_t i = 0;
@@ -127,8 +128,9 @@ MerlTable::MerlTable(const MerlFile& file, const CellPolicies& policies) : n_phi
     }
   }
   const auto n_phi = static_cast<std::size_t>(n_phi_d_);
-  counts_ = repair_cells(cells_, kinds, policies,
+  counts_ = repair_cells(values_, kinds, policies,
                          {{90, 90, n_phi, false}, {90 * 90, n_phi, 1, true}, {1, 90, 90 * n_phi, false}});
+  values_.emplace_back(0.0f);
   measured_ = MeasuredCells(cell_origins(kinds, policies), MerlFile::n_theta_d, n_phi_d_);
 }
 
@@ -155,7 +157,7 @@ glm::vec3 MerlTable::eval(const glm::vec3& wi, const glm::vec3& wo) const noexce
   const Neighbours between = neighbours_of(wi, wo);
   const Lerp &h = between.h, &d = between.d, &p = between.p;
   const auto row = [&](int ih, int id) {
-    const glm::vec3* cells = cells_.data() + (ih * MerlFile::n_theta_d + id) * n_phi_d_;
+    const glm::vec3* cells = values_.data() + (ih * MerlFile::n_theta_d + id) * n_phi_d_;
     return lerp(cells[p.lo], cells[p.hi], p.t);
   };
   return lerp(lerp(row(h.lo, d.lo), row(h.lo, d.hi), d.t), lerp(row(h.hi, d.lo), row(h.hi, d.hi), d.t), h.t);

@@ -83,13 +83,16 @@ class MerlTable {
   const CellCounts& cells() const noexcept { return counts_; }
   int n_phi_d() const noexcept { return n_phi_d_; }
 
+  /// [theta_h][theta_d][phi_d] in 1/sr, and a spare one: of each, four floats may be loaded.
+  const std::vector<glm::vec3>& values() const noexcept { return values_; }
+
  private:
   struct Neighbours;  // between which cells a pair of directions lies
 
   Neighbours neighbours_of(const glm::vec3& wi, const glm::vec3& wo) const noexcept;
 
   int n_phi_d_;
-  std::vector<glm::vec3> cells_;  // [theta_h][theta_d][phi_d]
+  std::vector<glm::vec3> values_;
   CellCounts counts_;
   MeasuredCells measured_;
 };

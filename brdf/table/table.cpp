@@ -1,3 +1,4 @@
+#include <gonio/brdf/batch/tables/batch_table.h>
 #include <gonio/brdf/formats/sniff.h>
 #include <gonio/brdf/table/table.h>
 #include <gonio/brdf/value/frame.h>
@@ -41,6 +42,14 @@ BrdfTable load(const std::filesystem::path& path, const CellPolicies& policies) 
 glm::vec3 BrdfTable::eval(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
   if (!(is_above(wi) && is_above(wo))) return glm::vec3(0.0f);
   return std::visit([&](const auto& table) { return table.eval(wi, wo); }, data_);
+}
+
+void BrdfTable::eval_n(std::size_t count, ConstArrays3 wi, ConstArrays3 wo, Arrays3 f_r) const noexcept {
+  std::visit(
+      [&](const auto& table) {
+        eval_many(table, count, {wi.x, wi.y, wi.z, wo.x, wo.y, wo.z}, {f_r.x, f_r.y, f_r.z});
+      },
+      data_);
 }
 
 float BrdfTable::measured(const glm::vec3& wi, const glm::vec3& wo) const noexcept {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -11,6 +12,7 @@
 #include <gonio/brdf/formats/mbsdf.h>
 #include <gonio/brdf/formats/merl.h>
 #include <gonio/brdf/formats/rgl/rgl.h>
+#include <gonio/brdf/value/arrays3.h>
 #include <gonio/brdf/value/luminance.h>
 
 namespace gonio {
@@ -40,6 +42,9 @@ class BrdfTable {
   /// f_r(wi, wo) in 1/sr per RGB channel (linear Rec. 709), without the cosine, never negative, never
   /// NaN; 0 for directions at or below the horizon. No allocation.
   glm::vec3 eval(const glm::vec3& wi, const glm::vec3& wo) const noexcept;
+
+  /// eval() of `count` pairs on vectors. TODO
+  void eval_n(std::size_t count, ConstArrays3 wi, ConstArrays3 wo, Arrays3 f_r) const noexcept;
 
   /// The share of that value which comes from cells that were measured, in [0, 1]: 1 unless some were
   /// made up while loading, because the file has no value there, or `wi` is outside the angles of

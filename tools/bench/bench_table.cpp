@@ -68,8 +68,26 @@ void evaluate(benchmark::State& state, const std::shared_ptr<const BrdfTable>& t
   state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * queries));
 }
 
+/// The same by BrdfTable::eval_n().
+void evaluate_batch(benchmark::State& state, const std::shared_ptr<const BrdfTable>& table) {
+  const Directions d(table);
+  std::vector<float> a[9];
+  for (auto& array : a) array.resize(queries);
+  for (std::size_t k = 0; k < queries; ++k)
+    for (int c = 0; c < 3; ++c) a[c][k] = d.wi[k][c], a[3 + c][k] = d.wo[k][c];
+  const Arrays3 rgb{a[6].data(), a[7].data(), a[8].data()};
+  for (auto _ : state) {
+    table->eval_n(queries, {a[0].data(), a[1].data(), a[2].data()}, {a[3].data(), a[4].data(), a[5].data()}, rgb);
+    benchmark::ClobberMemory();
+  }
+  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * queries));
+}
+
 void rgl_eval(benchmark::State& state) {
   if (const auto table = rgl(state)) evaluate(state, table);
+}
+void rgl_eval_batch(benchmark::State& state) {
+  if (const auto table = rgl(state)) evaluate_batch(state, table);
 }
 
 void rgl_load(benchmark::State& state) {
@@ -87,12 +105,16 @@ const BrdfTable& made_grid() {
   static const BrdfTable table = to_table(proof::gallery_tables().front());
   return table;
 }
-void grid_eval(benchmark::State& state) { evaluate(state, std::make_shared<const BrdfTable>(made_grid())); }
-void merl_eval(benchmark::State& state) {
+std::shared_ptr<const BrdfTable> shared_grid() { return std::make_shared<const BrdfTable>(made_grid()); }
+const std::shared_ptr<const BrdfTable>& made_merl() {
   static const auto table =
       std::make_shared<const BrdfTable>(MerlTable(sample_as_merl(made_grid()), {}), BrdfTable::Info{});
-  evaluate(state, table);
+  return table;
 }
+void grid_eval(benchmark::State& state) { evaluate(state, shared_grid()); }
+void grid_eval_batch(benchmark::State& state) { evaluate_batch(state, shared_grid()); }
+void merl_eval(benchmark::State& state) { evaluate(state, made_merl()); }
+void merl_eval_batch(benchmark::State& state) { evaluate_batch(state, made_merl()); }
 
 /// A self-contained stack of 32 diagrams of 33 x 33 lines with 8 x 4 colours each.
 BsdfData coloured(Interpolation interpolation, Chart chart) {
@@ -155,6 +177,11 @@ void rgl_bsdf(benchmark::State& state, Form form, BsdfValue value) {
   static const BsdfData data = fit_compact(*table).best().data;
   look_up(state, form, Call::sample, data, value == BsdfValue::table ? table : nullptr);
 }
+/// A table of MERL's layout with its f_r.
+void merl_bsdf(benchmark::State& state, Form form) {
+  static const BsdfData data = fit_compact(*made_merl()).best().data;
+  look_up(state, form, Call::sample, data, made_merl());
+}
 /// A displacement stack with colours of its own.
 void rgl_displacement(benchmark::State& state, Form form) {
   const auto table = rgl(state);
@@ -185,6 +212,7 @@ const int registered = [] {
   }
   for (const auto& [form, end] : forms) {
     benchmark::RegisterBenchmark((std::string("rgl_table_sample") + end).c_str(), rgl_bsdf, form, BsdfValue::table);
+    benchmark::RegisterBenchmark((std::string("merl_table_sample") + end).c_str(), merl_bsdf, form);
     benchmark::RegisterBenchmark((std::string("rgl_colour_sample") + end).c_str(), rgl_bsdf, form, BsdfValue::colour);
     benchmark::RegisterBenchmark((std::string("rgl_displacement_sample") + end).c_str(), rgl_displacement, form);
   }
@@ -193,8 +221,11 @@ const int registered = [] {
 
 BENCHMARK(rgl_sample);
 BENCHMARK(rgl_eval);
+BENCHMARK(rgl_eval_batch);
 BENCHMARK(merl_eval);
+BENCHMARK(merl_eval_batch);
 BENCHMARK(grid_eval);
+BENCHMARK(grid_eval_batch);
 BENCHMARK(rgl_load)->Unit(benchmark::kMillisecond);
 BENCHMARK(rgl_to_merl)->Unit(benchmark::kMillisecond)->UseRealTime();
 

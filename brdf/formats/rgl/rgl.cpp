@@ -39,6 +39,16 @@ float bilinear(const RglFile::Grid& grid, float x, float y) noexcept {
   return lerp(row(ly.lo), row(ly.hi), ly.t);
 }
 
+// A grid's values along theta at phi = 0, which is u_phi = 0.5.
+std::vector<float> middle_line(const RglFile::Grid& grid) {
+  const Lerp y = lerp_clamped(0.5f * static_cast<float>(grid.height - 1), grid.height);
+  std::vector<float> line(static_cast<std::size_t>(grid.width));
+  for (int x = 0; x < grid.width; ++x)
+    line[static_cast<std::size_t>(x)] = lerp(grid.values[static_cast<std::size_t>(y.lo * grid.width + x)],
+                                             grid.values[static_cast<std::size_t>(y.hi * grid.width + x)], y.t);
+  return line;
+}
+
 CellCounts repair_grid(RglFile::Grid& grid, const std::string& name, const CellPolicies& policies) {
   std::vector<glm::vec3> cells(grid.values.size());
   std::vector<CellKind> kinds(grid.values.size());
@@ -81,7 +91,7 @@ RglTable::RglTable(RglFile file, const CellPolicies& policies)
     : density_counts_(repair_densities(file, policies)),
       theta_i_(std::move(file.theta_i)),
       ndf_(std::move(file.ndf)),
-      sigma_(std::move(file.sigma)),
+      sigma_(middle_line(file.sigma)),
       vndf_(file.vndf.slices, file.vndf.height, file.vndf.width, file.vndf.values),
       luminance_(file.luminance.slices, file.luminance.height, file.luminance.width, file.luminance.values),
       colour_height_(file.colour_height),
@@ -106,6 +116,8 @@ RglTable::RglTable(RglFile file, const CellPolicies& policies)
       if (kinds[i] == CellKind::negative) colour_[i] = measured[i];
     }
   }
+  colour_.reserve(colour_.size() + 1);
+  colour_.emplace_back(0.0f);
 }
 
 Lerp RglTable::slice_at(float theta) const noexcept {
@@ -119,7 +131,11 @@ Lerp RglTable::slice_at(float theta) const noexcept {
 
 // Both hardly depend on the azimuth in an isotropic file; phi = 0 is u_phi = 0.5.
 float RglTable::ndf(float theta) const noexcept { return bilinear(ndf_, u_theta_of(theta), 0.5f); }
-float RglTable::sigma(float theta) const noexcept { return bilinear(sigma_, u_theta_of(theta), 0.5f); }
+float RglTable::sigma(float theta) const noexcept {
+  const auto n = static_cast<int>(sigma_.size());
+  const Lerp x = lerp_clamped(u_theta_of(theta) * static_cast<float>(n - 1), n);
+  return lerp(sigma_[static_cast<std::size_t>(x.lo)], sigma_[static_cast<std::size_t>(x.hi)], x.t);
+}
 
 RglTable::Normal RglTable::half_vector(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
   const glm::vec3 m = wi + wo;

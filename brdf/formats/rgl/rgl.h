@@ -102,6 +102,16 @@ class RglTable {
   bool spectral() const noexcept { return n_wavelengths_ > 0; }
   const std::vector<float>& theta_i() const noexcept { return theta_i_; }
 
+  /// What vector code reads.
+  const RglFile::Grid& ndf_grid() const noexcept { return ndf_; }
+  const std::vector<float>& sigma_line() const noexcept { return sigma_; }  ///< along theta, at phi = 0
+  const Warp2d& vndf() const noexcept { return vndf_; }
+  int colour_height() const noexcept { return colour_height_; }
+  int colour_width() const noexcept { return colour_width_; }
+  /// [slice][height][width], and a spare one: of each, four floats may be loaded.
+  const std::vector<glm::vec3>& colour() const noexcept { return colour_; }
+  bool jacobian() const noexcept { return jacobian_; }  ///< colour is to be multiplied by ndf / (4 sigma)
+
  private:
   struct Normal;  // a microfacet normal in the chart of the file
 
@@ -112,7 +122,8 @@ class RglTable {
 
   CellCounts density_counts_;
   std::vector<float> theta_i_;
-  RglFile::Grid ndf_, sigma_;
+  RglFile::Grid ndf_;
+  std::vector<float> sigma_;
   Warp2d vndf_, luminance_;
   int colour_height_, colour_width_;
   std::vector<glm::vec3> colour_;

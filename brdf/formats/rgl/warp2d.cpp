@@ -46,69 +46,62 @@ Cell locate(float x, int n) noexcept {
 Warp2d::Warp2d(int n_slices, int height, int width, const std::vector<float>& density)
     : height_(height),
       width_(width),
-      density_(density),
-      conditional_(density.size()),
-      marginal_(static_cast<std::size_t>(n_slices) * height) {
+      nodes_(density.size()),
+      lines_(static_cast<std::size_t>(n_slices) * static_cast<std::size_t>(height)) {
   const double dx = 1.0 / (width - 1), dy = 1.0 / (height - 1);
-  const std::size_t size = static_cast<std::size_t>(height) * width;
-  std::vector<double> mass(static_cast<std::size_t>(height));
+  const std::size_t size = static_cast<std::size_t>(height) * static_cast<std::size_t>(width);
+  for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_[i].density = density[i];
   for (int s = 0; s < n_slices; ++s) {
-    float* values = density_.data() + static_cast<std::size_t>(s) * size;
-    const auto row_mass = [&](int y) {
-      double sum = 0.0;
-      for (int x = 0; x + 1 < width; ++x) {
-        sum += 0.5 * dx * (static_cast<double>(values[y * width + x]) + values[y * width + x + 1]);
-      }
-      return sum;
+    Node* nodes = nodes_.data() + static_cast<std::size_t>(s) * size;
+    Line* lines = lines_.data() + static_cast<std::ptrdiff_t>(s) * height;
+    const auto area = [&](const Node* right) {
+      return 0.5 * dx * (static_cast<double>(right[-1].density) + right->density);
     };
     double total = 0.0;
     for (int y = 0; y < height; ++y) {
-      total += row_mass(y) * dy * (y == 0 || y == height - 1 ? 0.5 : 1.0);
+      double mass = 0.0;
+      for (int x = 1; x < width; ++x) mass += area(nodes + y * width + x);
+      total += mass * dy * (y == 0 || y == height - 1 ? 0.5 : 1.0);
     }
-    if (!(total > 0.0)) {
-      std::fill(values, values + size, 1.0f);
-      total = 1.0;
-    }
-    for (std::size_t i = 0; i < size; ++i) values[i] = static_cast<float>(values[i] / total);
+    for (std::size_t i = 0; i < size; ++i)
+      nodes[i].density = total > 0.0 ? static_cast<float>(nodes[i].density / total) : 1.0f;
 
-    double below = 0.0;
+    double below = 0.0, mass_before = 0.0;
     for (int y = 0; y < height; ++y) {
-      float* cumulative = conditional_.data() + static_cast<std::size_t>(s) * size + y * width;
-      double sum = 0.0;
+      Node* row = nodes + y * width;
+      double mass = 0.0;
+      row[0].before = 0.0f;
       for (int x = 1; x < width; ++x) {
-        sum += 0.5 * dx * (static_cast<double>(values[y * width + x - 1]) + values[y * width + x]);
-        cumulative[x] = static_cast<float>(sum);
+        mass += area(row + x);
+        row[x].before = static_cast<float>(mass);
       }
-      mass[static_cast<std::size_t>(y)] = sum;
-      if (y > 0) below += 0.5 * dy * (mass[static_cast<std::size_t>(y) - 1] + sum);
-      marginal_[static_cast<std::size_t>(s) * height + y] = static_cast<float>(below);
+      if (y > 0) below += 0.5 * dy * (mass_before + mass);
+      lines[y] = {static_cast<float>(below), row[width - 1].before};
+      mass_before = mass;
     }
   }
 }
 
 Warp2d::Point Warp2d::sample(const Lerp& slice, float u, float v) const noexcept {
-  const float* marginal_lo = marginal_.data() + static_cast<std::ptrdiff_t>(slice.lo) * height_;
-  const float* marginal_hi = marginal_.data() + static_cast<std::ptrdiff_t>(slice.hi) * height_;
-  const auto marginal = [&](int y) { return lerp(marginal_lo[y], marginal_hi[y], slice.t); };
+  const Line* lines_lo = line(slice.lo, 0);
+  const Line* lines_hi = line(slice.hi, 0);
+  const auto marginal = [&](int y) { return lerp(lines_lo[y].before, lines_hi[y].before, slice.t); };
+  const auto mass = [&](int y) { return lerp(lines_lo[y].mass, lines_hi[y].mass, slice.t); };
   const int iy = find_interval(height_, v, marginal);
-
-  const float* lo = row(conditional_, slice.lo, iy);
-  const float* hi = row(conditional_, slice.hi, iy);
-  const int last = width_ - 1;
-  const float mass_0 = lerp(lo[last], hi[last], slice.t);
-  const float mass_1 = lerp(lo[width_ + last], hi[width_ + last], slice.t);
+  const float mass_0 = mass(iy), mass_1 = mass(iy + 1);
   const float ty = invert_linear(mass_0, mass_1, (v - marginal(iy)) * static_cast<float>(height_ - 1));
 
-  const auto blend = [&](const float* a, const float* b, int x) {
-    return lerp(lerp(a[x], a[width_ + x], ty), lerp(b[x], b[width_ + x], ty), slice.t);
+  const Node* lo = row(slice.lo, iy);
+  const Node* hi = row(slice.hi, iy);
+  const auto blend = [&](float Node::*what, int x) {
+    return lerp(lerp(lo[x].*what, lo[width_ + x].*what, ty), lerp(hi[x].*what, hi[width_ + x].*what, ty), slice.t);
   };
   const float target = u * lerp(mass_0, mass_1, ty);
-  const auto conditional = [&](int x) { return blend(lo, hi, x); };
+  const auto conditional = [&](int x) { return blend(&Node::before, x); };
   const int ix = find_interval(width_, target, conditional);
 
-  const float* density_lo = row(density_, slice.lo, iy);
-  const float* density_hi = row(density_, slice.hi, iy);
-  const float d0 = blend(density_lo, density_hi, ix), d1 = blend(density_lo, density_hi, ix + 1);
+  const int last = width_ - 1;
+  const float d0 = blend(&Node::density, ix), d1 = blend(&Node::density, ix + 1);
   const float tx = invert_linear(d0, d1, (target - conditional(ix)) * static_cast<float>(last));
   return {(static_cast<float>(ix) + tx) / static_cast<float>(last),
           (static_cast<float>(iy) + ty) / static_cast<float>(height_ - 1), lerp(d0, d1, tx)};
@@ -116,33 +109,31 @@ Warp2d::Point Warp2d::sample(const Lerp& slice, float u, float v) const noexcept
 
 Warp2d::Point Warp2d::invert(const Lerp& slice, float x, float y) const noexcept {
   const Cell cx = locate(x, width_), cy = locate(y, height_);
-  const float* lo = row(conditional_, slice.lo, cy.i);
-  const float* hi = row(conditional_, slice.hi, cy.i);
-  const int last = width_ - 1;
-  const auto blend = [&](const float* a, const float* b, int i) {
-    return lerp(lerp(a[i], a[width_ + i], cy.t), lerp(b[i], b[width_ + i], cy.t), slice.t);
+  const Node* lo = row(slice.lo, cy.i) + cx.i;
+  const Node* hi = row(slice.hi, cy.i) + cx.i;
+  const auto blend = [&](float Node::*what, int i) {
+    return lerp(lerp(lo[i].*what, lo[width_ + i].*what, cy.t), lerp(hi[i].*what, hi[width_ + i].*what, cy.t), slice.t);
   };
-  const float* density_lo = row(density_, slice.lo, cy.i);
-  const float* density_hi = row(density_, slice.hi, cy.i);
-  const float d0 = blend(density_lo, density_hi, cx.i);
-  const float d1 = blend(density_lo, density_hi, cx.i + 1);
-  const float mass = blend(lo, hi, last);
-  const float below = blend(lo, hi, cx.i) + integrate_linear(d0, d1, cx.t) / static_cast<float>(last);
+  const float d0 = blend(&Node::density, 0), d1 = blend(&Node::density, 1);
+  const float before = blend(&Node::before, 0) + integrate_linear(d0, d1, cx.t) / static_cast<float>(width_ - 1);
 
-  const float mass_0 = lerp(lo[last], hi[last], slice.t);
-  const float mass_1 = lerp(lo[width_ + last], hi[width_ + last], slice.t);
-  const auto marginal = [&](int s) { return marginal_[static_cast<std::size_t>(s) * height_ + cy.i]; };
-  const float v = lerp(marginal(slice.lo), marginal(slice.hi), slice.t) +
+  const Line* lines_lo = line(slice.lo, cy.i);
+  const Line* lines_hi = line(slice.hi, cy.i);
+  const float mass_0 = lerp(lines_lo[0].mass, lines_hi[0].mass, slice.t);
+  const float mass_1 = lerp(lines_lo[1].mass, lines_hi[1].mass, slice.t);
+  const float mass = lerp(mass_0, mass_1, cy.t);
+  const float v = lerp(lines_lo[0].before, lines_hi[0].before, slice.t) +
                   integrate_linear(mass_0, mass_1, cy.t) / static_cast<float>(height_ - 1);
   // A line without mass is never sampled; any u would do.
-  return {mass > 0.0f ? std::min(below / mass, 1.0f) : x, std::min(v, 1.0f), lerp(d0, d1, cx.t)};
+  return {mass > 0.0f ? std::min(before / mass, 1.0f) : x, std::min(v, 1.0f), lerp(d0, d1, cx.t)};
 }
 
 float Warp2d::eval(const Lerp& slice, float x, float y) const noexcept {
   const Cell cx = locate(x, width_), cy = locate(y, height_);
   const auto at = [&](int s) {
-    const float* cell = row(density_, s, cy.i) + cx.i;
-    return lerp(lerp(cell[0], cell[1], cx.t), lerp(cell[width_], cell[width_ + 1], cx.t), cy.t);
+    const Node* cell = row(s, cy.i) + cx.i;
+    return lerp(lerp(cell[0].density, cell[1].density, cx.t),
+                lerp(cell[width_].density, cell[width_ + 1].density, cx.t), cy.t);
   };
   return lerp(at(slice.lo), at(slice.hi), slice.t);
 }

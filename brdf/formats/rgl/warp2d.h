@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include <gonio/brdf/formats/interpolate.h>
@@ -34,15 +35,31 @@ class Warp2d {
   /// The density at (x, y).
   float eval(const Lerp& slice, float x, float y) const noexcept;
 
+  /// What an inverse needs of a node, and of a line of nodes, lies side by side.
+  struct Node {
+    float density;
+    float before;  ///< the integral of the density over x from 0 to here
+  };
+  struct Line {
+    float before;  ///< the integral of `mass` over y from 0 to here
+    float mass;    ///< the integral of the density along the line
+  };
+  const Node* nodes() const noexcept { return nodes_.data(); }  ///< [slice][y][x]
+  const Line* lines() const noexcept { return lines_.data(); }  ///< [slice][y]
+  int height() const noexcept { return height_; }
+  int width() const noexcept { return width_; }
+
  private:
-  const float* row(const std::vector<float>& grid, int slice, int y) const noexcept {
-    return grid.data() + (static_cast<std::ptrdiff_t>(slice) * height_ + y) * width_;
+  const Line* line(int slice, int y) const noexcept {
+    return lines_.data() + static_cast<std::ptrdiff_t>(slice) * height_ + y;
+  }
+  const Node* row(int slice, int y) const noexcept {
+    return nodes_.data() + (static_cast<std::ptrdiff_t>(slice) * height_ + y) * width_;
   }
 
   int height_ = 0, width_ = 0;
-  std::vector<float> density_;      // [slice][y][x]
-  std::vector<float> conditional_;  // integral of density_ over x from 0, same shape
-  std::vector<float> marginal_;     // [slice][y]: integral over y of the last column of conditional_
+  std::vector<Node> nodes_;
+  std::vector<Line> lines_;
 };
 
 }  // namespace gonio
