@@ -32,8 +32,9 @@ class BrdfTable;
 /// |---|---|
 /// | wo of sample() | 1e-4, wherever the map is no steeper than that lets floats |
 /// | pdf | 2e-3, relative, besides 1e-4 of the largest density |
-/// | weight | 1e-5, relative: of the colour at (u, v), or of the table's f_r cos / pdf at what is returned |
-/// | f_r of a colour | as exact as the pdf that it is computed from; the table's is exact |
+/// | weight | 1e-5, relative: of the colour at (u, v), or of f_r cos / pdf of what is returned, f_r being eval()'s |
+/// | f_r of a colour | as exact as the pdf that it is computed from |
+/// | f_r of a table | that of BrdfTable::eval(), as BrdfTable::eval_n() says: mostly 2e-7, relative |
 ///
 /// Copies share everything and are cheap. Thread safety: immutable; every member may be called concurrently. No member
 /// but the constructor allocates or locks.

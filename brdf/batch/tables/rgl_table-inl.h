@@ -112,7 +112,7 @@ HWY_INLINE void eval_rgl(const RglTable& table, std::size_t count, const float* 
       const V u_theta = u_theta_of(m),
               u_phi = hn::MulAdd(relative_azimuth(pair.wi, m), set(0.5f / pi<float>), set(0.5f));
       warps.set_at(k, warp, slice_at(table.theta_i(), theta_i), u_theta, u_phi);
-      V scale = hn::IfThenElseZero(pair.above, hn::Div(set(1), hn::Max(pair.wo.z, set(RglTable::min_cosine))));
+      V scale = hn::Div(set(1), hn::Max(pair.wo.z, set(RglTable::min_cosine)));
       if (table.jacobian()) {
         const Place across = place_on(u_theta, ndf.width), along = place_on(u_phi, ndf.height);
         const VI row = hn::Mul(along.lo, set_int(ndf.width));
@@ -125,7 +125,7 @@ HWY_INLINE void eval_rgl(const RglTable& table, std::size_t count, const float* 
         scale =
             hn::Min(hn::Mul(scale, quotient(density, hn::Mul(set(4), area))), set(std::numeric_limits<float>::max()));
       }
-      hn::Store(scale, d, factor + k);
+      hn::Store(hn::IfThenElseZero(pair.above, scale), d, factor + k);
     }
     for (std::size_t k = 0; k < elements; ++k) warps.load(k, warp, next_slice);
     for (std::size_t k = 0; k < elements; k += hn::Lanes(d)) {
