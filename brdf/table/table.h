@@ -46,10 +46,9 @@ class BrdfTable {
   /// eval() of `count` pairs, on the vectors of the best instruction set that the machine has: ten times as fast.
   /// Arrays hold `count` floats, in any alignment; an output must not overlap an input. No allocation.
   ///
-  /// Positions among the cells are rounded differently. Values are those of eval() within the sum of: 1e-5, relative;
+  /// Values are those of eval() but for rounding, most within 2e-7, relative. All are within the sum of 1e-5, relative;
   /// 1e-5 of what they would be if all cells were as bright as the brightest; and what eval() changes by as the
-  /// directions move by 1e-5. Most are within 2e-7, relative. RGL tables keep the second only where no line of their
-  /// warp is without density. What is not a number in eval()'s arguments gives 0 here as well.
+  /// directions move by 1e-5. Only next to a line without density, which an RGL file may have, is it more.
   void eval_n(std::size_t count, ConstArrays3 wi, ConstArrays3 wo, Arrays3 f_r) const noexcept;
 
   /// The share of that value which comes from cells that were measured, in [0, 1]: 1 unless some were

@@ -40,15 +40,16 @@ HWY_INLINE void eval_merl(const MerlTable& table, std::size_t count, const float
   const int n_h = MerlFile::n_theta_h, n_d = MerlFile::n_theta_d, n_phi = table.n_phi_d();
   const RgbGrid grid(table.values(), n_h, n_d, n_phi);
   eval_grid(grid, count, in, out, [&](const Pair& pair, RgbPlaces& places, std::size_t k) GONIO_INLINED {
-    const V per_degree = set(static_cast<float>(180 / pi<double>)), half = set(0.5f), period = set(float(n_phi));
+    const V per_degree = set(static_cast<float>(180 / pi<double>)), half = set(0.5f),
+            period = set(static_cast<float>(n_phi));
     const HalfDifferenceAngles angles(pair);
     const V root = hn::Sqrt(hn::Mul(angles.theta_h, set(static_cast<float>(2 / pi<double>))));
     const Place h = place_among(hn::MulSub(set(90), root, half), n_h);
     const Place d = place_among(hn::MulSub(angles.theta_d, per_degree, half), n_d);
-    V bin = hn::Mul(angles.phi_d, per_degree);
-    bin = hn::IfThenElse(hn::Lt(bin, zero()), hn::Add(bin, period), bin);
-    // lerp_periodic(): from half a cell before the first centre on.
-    const V x = hn::IfThenElseZero(hn::And(hn::Ge(bin, zero()), hn::Le(bin, period)), hn::Sub(bin, half));
+    const V bin = hn::Mul(angles.phi_d, per_degree);
+    V x = hn::Sub(hn::IfThenElse(hn::Lt(bin, zero()), hn::Add(bin, period), bin), half);
+    // lerp_periodic(): from the last cell over the end to the first one. Of a NaN, cell 0.
+    x = hn::IfThenElseZero(hn::And(hn::Ge(x, set(-1)), hn::Lt(x, period)), x);
     const V base = hn::Floor(x);
     const VI last = set_int(n_phi - 1), before = truncated(base);
     const VI lo = hn::IfThenElse(hn::Lt(before, hn::Zero(DI())), last, before);
