@@ -322,6 +322,7 @@ RglFile resample_as_rgl(const Reflectance& f_r, std::string description, const R
     std::sort(slices.begin(), slices.end(), [](const auto& a, const auto& b) { return a->theta_i < b->theta_i; });
   }
   std::vector<const Slice*> all;
+  all.reserve(slices.size());
   for (const auto& slice : slices) all.push_back(slice.get());
   return resampler.join(all);
 }

@@ -90,8 +90,8 @@ std::optional<double> efficacy(const Luminaire& light) {
   return flux(light.diagram) / light.watts;
 }
 
-std::string flux_unit(const Luminaire& luminaire) {
-  const std::string& unit = luminaire.unit;
+std::string flux_unit(const Luminaire& light) {
+  const std::string& unit = light.unit;
   if (unit == "cd") return "lm";
   const std::size_t per = unit.rfind("/sr");
   return per != std::string::npos && per + 3 == unit.size() ? unit.substr(0, per) : unit + " sr";

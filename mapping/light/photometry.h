@@ -28,12 +28,12 @@ Photometry photometry(const LightDiagram& diagram);
 
 /// Light output ratio: flux of the luminaire over that of its lamps; unset if that is unknown or
 /// the photometry is absolute.
-std::optional<double> light_output_ratio(const Luminaire& luminaire);
+std::optional<double> light_output_ratio(const Luminaire& light);
 /// The unit of fluxes: "lm" for intensities in cd, of radiometric files that of their own
 /// intensities without "/sr".
-std::string flux_unit(const Luminaire& luminaire);
+std::string flux_unit(const Luminaire& light);
 /// Luminous efficacy [lm/W]: flux over input power; unset if that is unknown.
-std::optional<double> efficacy(const Luminaire& luminaire);
+std::optional<double> efficacy(const Luminaire& light);
 
 /// How intensities are scaled before use. Nothing in the library scales unless asked.
 enum class LightNormalisation {

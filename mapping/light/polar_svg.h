@@ -22,13 +22,13 @@ struct PolarPlot {
 /// angles of the planes below. The upper half is drawn only if there is light. Intensities are
 /// those of the diagram (bilinear).
 /// @throws Error for a dark luminaire, no plane, or more than 4.
-std::string polar_svg(const Luminaire& luminaire, const PolarPlot& plot = {});
+std::string polar_svg(const Luminaire& light, const PolarPlot& plot = {});
 
 /// Radius of I = 1 cd (or cd/klm), and the centre, in the units of the picture that polar_svg()
 /// draws: for tests and overlays.
 struct PolarScale {
   double radius_per_unit, x, y;
 };
-PolarScale polar_scale(const Luminaire& luminaire, const PolarPlot& plot = {});
+PolarScale polar_scale(const Luminaire& light, const PolarPlot& plot = {});
 
 }  // namespace gonio

@@ -29,7 +29,7 @@ const Json& member(const Json& object, const char* key) {
 std::string string_of(const Json& value) { return value.is_string() ? value.get<std::string>() : ""; }
 
 Json load_report(const std::filesystem::path& path) {
-  const Json report = parse_json(read_bytes(path), path.string());
+  Json report = parse_json(read_bytes(path), path.string());
   for (const char* key : {"materials", "lights"}) {
     if (!report.is_object() || !report.contains(key) || !report[key].is_array())
       throw Error(path.string() + ": " + key + ": found none, expected the list of a report.json");

@@ -24,6 +24,7 @@ LineFit prepare_lines(const BrdfTable& table, Chart chart, int most_meridians, i
                       const std::vector<double>& more) {
   constexpr int angles = 14;
   std::vector<DiskDensity> densities;
+  densities.reserve(angles + more.size() + 1);
   for (int k = 0; k < angles; ++k)
     densities.push_back(table_density(table, chart, pi<double> / 2 * (k + 0.5) / angles));
   for (const double theta_i : more) densities.push_back(table_density(table, chart, theta_i));

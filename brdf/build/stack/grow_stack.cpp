@@ -202,6 +202,7 @@ class Growth {
     if (splits.empty()) return false;
 
     std::vector<double> middles;
+    middles.reserve(splits.size());
     for (const Split& s : splits) middles.push_back(s.middle);
     build(middles);
     while (bytes_ > limits_.bytes && !splits.empty()) {  // what does not fit goes, the least useful first

@@ -31,6 +31,7 @@ Vec3<double> from_imath(const Imath::V3d& v) { return {v.x, v.y, v.z}; }
 
 std::vector<float> to_degrees(const std::vector<double>& radians) {
   std::vector<float> degrees;
+  degrees.reserve(radians.size());
   for (double r : radians) degrees.push_back(static_cast<float>(r * 180 / pi<double>));
   return degrees;
 }

@@ -16,7 +16,7 @@ inline constexpr int light_exr_version = 1;
 /// the frame, and what the file said about the luminaire. A type B diagram keeps its own frame. Here
 /// and below, a file at `path` is replaced as a whole or left as it was.
 /// @throws Error if the path cannot be written.
-void save_light(const std::filesystem::path& path, const Luminaire& luminaire);
+void save_light(const std::filesystem::path& path, const Luminaire& light);
 
 /// @throws Error naming the attribute if the file is not such a file, is damaged, or of another
 /// version.

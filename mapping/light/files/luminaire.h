@@ -70,12 +70,12 @@ Luminaire load_light(const std::filesystem::path& path, const LightOptions& opti
 /// The luminaire as an LM-63-2002 file of type C, with the strongest symmetry that holds. Absolute
 /// photometry (lumens -1) unless the flux of the lamps is known. A diagram whose polar axis is not
 /// vertical (type B) is tabulated anew every half degree.
-IesFile to_ies(const Luminaire& luminaire, const LightOptions& options = {});
+IesFile to_ies(const Luminaire& light, const LightOptions& options = {});
 
 /// The luminaire as an EULUMDAT file, with the strongest symmetry that holds and whose planes other
 /// programs find by index as well; without symmetry where they would not. Intensities are per 1000
 /// lm of the lamps, or, where these are unknown, of the luminaire (absolute photometry, number of
 /// lamps -1). Direct ratios are left 0.
-EulumdatFile to_eulumdat(const Luminaire& luminaire);
+EulumdatFile to_eulumdat(const Luminaire& light);
 
 }  // namespace gonio

@@ -46,9 +46,9 @@ class LightTexture {
   /// @throws Error as check(), and if the diagram is dark everywhere.
   LightTexture(const LightDiagram& diagram, LightFilter filter, int most_cells = 1440);
 
-  /// The intensity over I_max in a direction of space, a unit vector; 0 in the dark hemisphere. At
+  /// The intensity over I_max in direction `w` of space, a unit vector; 0 in the dark hemisphere. At
   /// least 0; filters that overshoot may exceed 1.
-  float lookup(const Vec3<float>& direction) const noexcept;
+  float lookup(const Vec3<float>& w) const noexcept;
   /// lookup() times I_max [cd].
   double intensity(const Vec3<double>& direction) const noexcept {
     return max_cd_ * double(lookup(Vec3<float>(direction)));
@@ -82,10 +82,10 @@ class LightTexture {
 float point_light(const LightTexture& texture, float intensity, const Vec3<float>& offset) noexcept;
 
 /// The intensity [cd] that two perpendicular planes of a diagram, C0-C180 and C90-C270, imply in
-/// any direction: the direction is projected onto both planes, and between the two intensities
+/// any direction `w`: it is projected onto both planes, and between the two intensities
 /// found there an ellipse with these semi-axes is followed (Languenou and Tellier 1992, as
 /// described by Wallner 2008, section 3): I = sqrt(I0^2 cos^2 C + I1^2 sin^2 C). Exact on the two
 /// planes; a rotationally symmetric luminaire is not reproduced exactly between them.
-double two_plane_intensity(const LightDiagram& diagram, const Vec3<double>& direction) noexcept;
+double two_plane_intensity(const LightDiagram& diagram, const Vec3<double>& w) noexcept;
 
 }  // namespace gonio

@@ -200,7 +200,7 @@ LightDiagram every_second(const LightDiagram& d) {
   return result;
 }
 
-Prediction predict_left_out(const LightDiagram& d, const Reconstruction& reconstruction) {
+Prediction predict_left_out(const LightDiagram& d, const Reconstruction& from_the_rest) {
   const bool halved_c = d.c.size() >= 9 && d.c.size() % 2 == 1;
   const double largest = max_intensity(d);
   Prediction p{0, 0, 0};
@@ -208,7 +208,7 @@ Prediction predict_left_out(const LightDiagram& d, const Reconstruction& reconst
     for (std::size_t j = 0; j < d.gamma.size(); ++j) {
       if (j % 2 == 0 && (i % 2 == 0 || !halved_c)) continue;
       if (d.gamma[j] == 0 || d.gamma[j] > 3.1415) continue;  // the poles are known
-      const double error = (reconstruction(d.frame.direction(d.c[i], d.gamma[j])) - d.at(i, j)) / largest;
+      const double error = (from_the_rest(d.frame.direction(d.c[i], d.gamma[j])) - d.at(i, j)) / largest;
       p.rms += error * error, p.largest = std::max(p.largest, std::abs(error)), ++p.angles;
     }
   if (p.angles > 0) p.rms = std::sqrt(p.rms / static_cast<double>(p.angles));
