@@ -334,7 +334,7 @@ std::vector<Variant> make_variants(const StabilityInput& input) {
 
   std::vector<Variant> v;
   v.push_back(of_map(p, "cardan", "eq. 11 divides by d_j - d_j+1 and subtracts the large quotients again",
-                     [good_quadratic, good_cubic](const Problem& q, float a, float b) {
+                     [good_quadratic](const Problem& q, float a, float b) {
                        return q.arrays.map(a, b, good_quadratic, [](const RadialCell<float>& c, float tau) {
                          return textbook::cardan(c, tau);
                        });
