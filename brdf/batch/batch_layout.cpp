@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <limits>
+#include <string>
 
 #include <gonio/brdf/batch/batch_layout.h>
 #include <gonio/mapping/base/error.h>
+#include <gonio/mapping/numeric/code16.h>
 
 namespace gonio {
 
@@ -10,36 +12,52 @@ namespace {
 
 /// Vector code has offsets in bytes of 32 bits.
 void check_size(std::size_t values) {
-  constexpr std::size_t most = std::numeric_limits<int>::max() / sizeof(float);
+  constexpr std::size_t most = std::numeric_limits<int>::max() / 8;
   if (values > most)
     throw Error("batch: found " + std::to_string(values) + " values, expected at most " + std::to_string(most));
 }
 
-/// No mass and no line is above; small enough for weights and sums.
-constexpr float beyond = 1e30f;
-
 int round_up(int count, int unit) { return (count + unit - 1) / unit * unit; }
 
-/// What searches read at once, at most: among lines, from the second one on, and among groups.
-constexpr int lines_at_once = 16, groups_at_once = 8;
-int padded(int lines) { return std::max(lines, 1 + round_up(lines - 2, lines_at_once)); }
+constexpr int at_once = 16;  // floats that searches read, at most: as many may be read behind an array
 
 }  // namespace
 
 BatchAngles::BatchAngles(const std::vector<float>& theta_i) : count(static_cast<int>(theta_i.size())), values(theta_i) {
+  radii.reserve(theta_i.size());
   for (const float theta : theta_i) radii.push_back(static_cast<float>(theta_to_radius(double{theta})));
   if (count < 2) return;
-  // A little wider than they are: vectors may round a radius into the next part.
-  constexpr float part = 1.0f / guide_parts, margin = 1e-3f * part;
-  for (int k = 0; k < guide_parts; ++k) {
-    guide.push_back(find_cell(radii.data(), count, static_cast<float>(k) * part - margin));
-    const float end = k + 1 < guide_parts ? static_cast<float>(k + 1) * part + margin : 4;
-    guide_steps = std::max(guide_steps, find_cell(radii.data(), count, end) - guide.back());
+  if (count > std::numeric_limits<std::uint16_t>::max())
+    throw Error("batch: found " + std::to_string(count) + " incident angles, expected fewer than 65536");
+  for (guide_parts = 16; guide_steps != 1 && guide_parts < 1024;) {
+    guide_parts *= 2, guide_steps = 0;
+    guide.clear();
+    // A little wider than they are: vectors may round a radius into the next part.
+    const float part = 1.0f / static_cast<float>(guide_parts), margin = 1e-3f * part;
+    for (int k = 0; k < guide_parts; ++k) {
+      const int first = find_cell(radii.data(), count, static_cast<float>(k) * part - margin);
+      const float end = k + 1 < guide_parts ? static_cast<float>(k + 1) * part + margin : 4;
+      guide_steps = std::max(guide_steps, find_cell(radii.data(), count, end) - first);
+      guide.push_back(static_cast<std::uint16_t>(first));
+    }
+    if (guide_steps == 0) break;
   }
+  guide.push_back(0);
+  guide.shrink_to_fit();
 }
 
 std::size_t BatchAngles::bytes() const noexcept {
-  return (values.capacity() + radii.capacity()) * sizeof(float) + guide.capacity() * sizeof(int);
+  return (values.capacity() + radii.capacity()) * sizeof(float) + guide.capacity() * sizeof(std::uint16_t);
+}
+
+std::size_t BatchLayout::diagram_bytes(std::size_t meridians, std::size_t parallels) noexcept {
+  const std::size_t groups = (parallels + group - 2) / group;
+  return groups * meridians * group_codes * sizeof(std::uint16_t) + (2 + meridians * (groups + 1)) * sizeof(float);
+}
+
+std::size_t BatchLayout::lines_bytes(std::size_t meridians, std::size_t parallels) noexcept {
+  const std::size_t groups = (parallels + group - 2) / group;
+  return (meridians + groups * group + 1) * sizeof(float);
 }
 
 BatchLayout::BatchLayout(const Stack<float>& stack)
@@ -51,65 +69,91 @@ BatchLayout::BatchLayout(const Stack<float>& stack)
       interpolation(stack.interpolation()) {
   if (interpolation == Interpolation::mixture)
     throw Error("batch: interpolation: found mixture, expected nearest, displacement or blend");
-  for (const Diagram<float>& d : stack.diagrams()) {
+  const auto& diagrams = stack.diagrams();
+  bool shared = true;
+  for (const Diagram<float>& d : diagrams) {
     meridians = std::max(meridians, d.meridians());
     parallels = std::max(parallels, d.parallels());
+    shared = shared && d.same_lines(diagrams.front());
   }
-  across = round_up(meridians - 1, group) / group, along = round_up(parallels - 1, group) / group;
-  before_row = round_up(along - 1, groups_at_once);
-  r = padded(meridians);
-  before_meridians = r + padded(parallels);
-  before_parallels = before_meridians + round_up(across - 1, groups_at_once);
-  const int of_meridians = across * meridian_group;
-  parallel_groups = round_up(before_parallels + meridians * before_row + of_meridians,
-                             parallel_group);  // begin with a line of the cache
-  meridian_groups = parallel_groups - of_meridians;
-  stride = parallel_groups + meridians * along * parallel_group;
-  check_size(stack.diagrams().size() * static_cast<std::size_t>(stride));
-  lines_.assign(stack.diagrams().size() * static_cast<std::size_t>(stride) / 16, Line{});
-  float* block = lines_.data()->x;
-  for (const Diagram<float>& d : stack.diagrams()) {
+  const std::size_t count = diagrams.size(), m_count = static_cast<std::size_t>(meridians);
+  groups = round_up(parallels - 1, group) / group;
+  before = 1, along = before + meridians + 1, starts = along + meridians;
+  r = meridians;
+  const int lines = meridians + groups * group + 1;
+  lines_stride = shared ? 0 : lines;
+  check_size(count * m_count * static_cast<std::size_t>(groups) * group_codes);
+  code_stride = groups * meridians * group_codes;
+  stride = starts + meridians * (groups - 1);
+
+  codes_.assign(count * static_cast<std::size_t>(code_stride) + group_codes, 0);
+  floats_.assign(count * static_cast<std::size_t>(stride) + at_once, beyond);
+  lines_.assign((shared ? 1 : count) * static_cast<std::size_t>(lines) + at_once, beyond);
+  for (std::size_t k = 0; k < count; ++k) {
+    const Diagram<float>& d = diagrams[k];
     const int m = d.meridians(), n = d.parallels();
-    const float* const phi = d.values().data();
-    const float *cumulative_phi = phi + m, *own_r = cumulative_phi + m, *density = own_r + n,
-                *cumulative = density + m * n;
-    std::fill_n(block, meridian_groups, beyond);
-    std::copy_n(phi, m, block), std::copy_n(own_r, n, block + r);
-    // The masses before cells: into groups, `step` floats apart, and those before groups apart.
-    const auto store = [](const float* mass, int cells, int count, float* before_groups, float* to, int step) {
-      for (int g = 0; g < count; ++g, to += step) {
-        for (int k = 0; k < group; ++k) to[k] = g * group + k < cells ? mass[g * group + k] : beyond;
-        if (g > 0) before_groups[g - 1] = to[0];
+    float* own_lines = lines_.data() + k * static_cast<std::size_t>(lines_stride);
+    std::copy_n(d.phi(), m, own_lines);
+    std::fill(std::copy_n(d.r(), n, own_lines + r), own_lines + lines, 1.0f);
+
+    std::uint16_t* own_codes = codes_.data() + k * static_cast<std::size_t>(code_stride);
+    float* own = floats_.data() + k * static_cast<std::size_t>(stride);
+    const double largest = *std::max_element(d.density(0), d.density(m));
+    std::vector<double> mass_at(static_cast<std::size_t>(stride), beyond);  // in units of the largest density
+    double sum = 0, previous = 0;
+    for (int i = 0; i < m; ++i) {
+      std::vector<double> density;
+      for (int j = 0; j < n; ++j) {
+        const std::uint16_t code = encode16(d.density(i)[j] / largest);
+        density.push_back(decode16(code));
+        // The crossing between two groups belongs to both.
+        const int g = j / group, in_group = j % group;
+        if (g < groups) own_codes[(g * meridians + i) * group_codes + in_group] = code;
+        if (g > 0 && in_group == 0) own_codes[((g - 1) * meridians + i) * group_codes + group] = code;
       }
-    };
-    float* to = block + meridian_groups;
-    store(cumulative_phi, m - 1, across, block + before_meridians, to, meridian_group);
-    for (int g = 0; g < across; ++g, to += meridian_group)
-      for (int k = 0; k <= group && g * group + k < m; ++k) {
-        const int i = g * group + k;
-        to[group + 1 + 2 * k] = phi[i], to[group + 2 + 2 * k] = cumulative[(i + 1) * n - 1];
+      double mass = 0;
+      for (int j = 0; j + 1 < n; ++j) {
+        if (j > 0 && j % group == 0)
+          mass_at[static_cast<std::size_t>(starts + i * (groups - 1) + j / group - 1)] = mass;
+        const double r0 = d.r()[j];
+        mass += RadialCell<double>{r0, d.r()[j + 1] - r0, density[static_cast<std::size_t>(j)],
+                                   density[static_cast<std::size_t>(j) + 1]}
+                    .mass(1);
       }
-    for (int i = 0; i < m; ++i, density += n, cumulative += n) {
-      to = block + parallel_groups + i * along * parallel_group;
-      store(cumulative, n - 1, along, block + before_parallels + i * before_row, to, parallel_group);
-      for (int g = 0; g < along; ++g, to += parallel_group)
-        for (int k = 0; k <= group && g * group + k < n; ++k) to[group + k] = density[g * group + k];
+      if (i > 0) sum += (double{d.phi()[i]} - d.phi()[i - 1]) * (previous + mass) / 2;
+      mass_at[static_cast<std::size_t>(before + i)] = sum, mass_at[static_cast<std::size_t>(along + i)] = mass;
+      previous = mass;
     }
-    block += stride;
+    // From what is stored: the pdf is that of the draws whatever rounding did.
+    const double scale = whole_mass() / sum;
+    if (!(scale < 1e38))
+      throw Error("batch: diagram " + std::to_string(k) + ": found a mass of " + std::to_string(sum) +
+                  " of its largest density, expected more");
+    for (int x = before; x < stride; ++x)
+      own[x] = static_cast<float>(std::min(mass_at[static_cast<std::size_t>(x)] * scale, double{beyond}));
+    own[0] = static_cast<float>(scale) * half_unit;
   }
+}
+
+std::size_t BatchLayout::bytes() const noexcept {
+  return angles.bytes() + codes_.capacity() * sizeof(std::uint16_t) +
+         (floats_.capacity() + lines_.capacity()) * sizeof(float);
 }
 
 BatchColour::BatchColour(const Colour& colour, const BatchLayout& stack)
     : side(colour.side()),
+      unit(colour.largest() * half_unit),
       angles(colour.theta_i()),
       same_angles(angles.values == stack.angles.values),
       layer(side * (side / 2)),
       last_row(std::max(side / 2 - 2, 0)),
       next_row(side > 2 ? side : 0),
       next_layer(angles.count > 1 ? layer : 0) {
-  check_size(4 * colour.cells());
-  for (const glm::vec3& w : colour.values())
-    for (const float channel : {w.r, w.g, w.b, 0.0f}) values.push_back(channel);
+  check_size(3 * colour.cells());
+  if (colour.empty()) return;
+  codes.reserve(3 * colour.cells() + 2);
+  codes.assign(colour.codes().begin(), colour.codes().begin() + static_cast<std::ptrdiff_t>(3 * colour.cells()));
+  codes.resize(codes.size() + 2);
 }
 
 }  // namespace gonio

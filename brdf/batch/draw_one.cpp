@@ -29,8 +29,8 @@ struct BracketOfOne {
 HWY_INLINE BracketOfOne bracket_of_one(const BatchAngles& angles, const IncidentAngle& i) {
   if (angles.count == 1) return {0, 0};
   const float r = hn::GetLane(i.r);
-  int k = angles.guide[static_cast<std::size_t>(
-      std::min(static_cast<int>(r * BatchAngles::guide_parts), BatchAngles::guide_parts - 1))];
+  const int part = static_cast<int>(r * static_cast<float>(angles.guide_parts));
+  int k = angles.guide[static_cast<std::size_t>(std::min(part, angles.guide_parts - 1))];
   for (int step = 0; step < angles.guide_steps; ++step) k = std::min(k + (angles.radii[k + 1] < r), angles.count - 2);
   const V first = set(angles.values[k]), last = set(angles.values[k + 1]);
   return {k, hn::GetLane(clamp01(hn::Div(hn::Sub(i.theta, first), hn::Sub(last, first))))};
@@ -44,14 +44,12 @@ HWY_INLINE void colour_of_one(const BatchColour& colour, const BracketOfOne& bra
   const float y = hn::GetLane(hn::Min(hn::Max(along, zero()), hn::MulSub(side, half, set(1))));
   const int i = std::min(static_cast<int>(x), colour.side - 2), j = std::min(static_cast<int>(y), colour.last_row);
   const std::ptrdiff_t cell = bracket.k * colour.layer + j * colour.side + i;
-  mix_cells(colour, colour.values.data() + 4 * cell, x - static_cast<float>(i), y - static_cast<float>(j),
-            bracket.alpha, to);
+  mix_cells(colour, colour.codes.data() + 3 * cell, x - static_cast<float>(i), y - static_cast<float>(j), bracket.alpha,
+            to);
 }
 
-/// Numbers of two diagrams, as lanes; of their first lanes, of their second ones.
+/// Numbers of two diagrams, as lanes.
 HWY_INLINE V lanes(float x0, float x1) { return hn::InterleaveLower(D(), set(x0), set(x1)); }
-HWY_INLINE V first_lanes(V x0, V x1) { return hn::InterleaveLower(D(), x0, x1); }
-HWY_INLINE V second_lanes(V x0, V x1) { return hn::InterleaveUpper(D(), x0, x1); }
 HWY_INLINE float second_lane(V x) { return hn::ExtractLane(x, 1); }
 
 /// Where a draw falls in one or two diagrams.
@@ -59,56 +57,53 @@ struct InDiagrams {
   V mass, phi, r, gap, pdf;
 };
 
-/// Diagram::meridian_at() and parallel_at(), the mass before the meridian being `target`; of the first source alone, or
-/// of both.
+/// Diagram::sample(), the mass before the meridian being `target`; of the first source alone, or of both.
 template <bool both, class Source>
 HWY_INLINE InDiagrams draw_maps(const BatchLayout& layout, const Source& source0, const Source& source1, V target, V v,
                                 V rest) {
-  constexpr std::ptrdiff_t cells = BatchLayout::group, floats = BatchLayout::parallel_group;
   struct Sector {
-    std::ptrdiff_t index;
-    V first, last;  // phi and mass of its meridians
+    std::ptrdiff_t i;
+    float lines[4];  // phi and mass of its meridians
     float below;
   };
   const auto sector = [&](const Source& source) GONIO_INLINED {
-    const float before = hn::GetLane(target);
-    const std::ptrdiff_t g = count_below<true>(source.row(layout.before_meridians), 0, layout.across - 1, before);
-    const auto group = source.row(layout.meridian_groups + g * BatchLayout::meridian_group);
-    const std::ptrdiff_t i = find_in_group(group, before);
-    return Sector{g * cells + i, group.mixed(D(), cells + 1 + 2 * i), group.mixed(D(), cells + 3 + 2 * i), group.at(i)};
+    Sector s;
+    s.i = find_meridian(layout, source, hn::GetLane(target));
+    copy_meridians(layout, source, s.i, s.lines);
+    s.below = source.row(layout.before).at(s.i);
+    return s;
   };
   const Sector s0 = sector(source0), s1 = both ? sector(source1) : s0;
-  const V phi0 = first_lanes(s0.first, s1.first), m0 = second_lanes(s0.first, s1.first);
-  const V width = hn::Sub(first_lanes(s0.last, s1.last), phi0), m1 = second_lanes(s0.last, s1.last);
+  const V phi0 = lanes(s0.lines[0], s1.lines[0]), m0 = lanes(s0.lines[1], s1.lines[1]);
+  const V width = hn::Sub(lanes(s0.lines[2], s1.lines[2]), phi0), m1 = lanes(s0.lines[3], s1.lines[3]);
   const V a = invert_azimuth(width, m0, m1, hn::Sub(target, lanes(s0.below, s1.below))), mass = mix(a, m0, m1);
 
-  struct Ring {
-    V r, density;  // of its parallels
-    float below;
-  };
   const V next = hn::Mul(v, mass), b = hn::Sub(set(1), a);
-  const auto ring = [&](const Source& source, std::ptrdiff_t i, float b_of, float a_of, float before) GONIO_INLINED {
-    const auto groups = source.row(layout.before_parallels + i * layout.before_row, layout.before_row, b_of, a_of);
-    const std::ptrdiff_t g = count_below<true>(groups, 0, layout.along - 1, before);
-    const auto group =
-        source.row(layout.parallel_groups + (i * layout.along + g) * floats, layout.along * floats, b_of, a_of);
-    const std::ptrdiff_t j = find_in_group(group, before);
-    return Ring{Row{source.block + layout.r}.mixed(D(), g * cells + j), group.mixed(D(), cells + j), group.at(j)};
+  struct Ring {
+    float cell[4];  // radii and densities of its parallels
+    float before;
   };
-  const Ring r0 = ring(source0, s0.index, hn::GetLane(b), hn::GetLane(a), hn::GetLane(next));
-  const Ring r1 = both ? ring(source1, s1.index, second_lane(b), second_lane(a), second_lane(next)) : r0;
-  Cell c{first_lanes(r0.r, r1.r), zero(), first_lanes(r0.density, r1.density), second_lanes(r0.density, r1.density)};
-  const V end = second_lanes(r0.r, r1.r);
+  const auto ring = [&](const Source& source, std::ptrdiff_t i, float b_of, float a_of, float before) GONIO_INLINED {
+    const auto row = starts(layout, source, i, b_of, a_of);
+    const std::ptrdiff_t g = count_below(row, 0, layout.groups - 1, before);
+    Ring found;
+    found.before = find_in_group(layout, source, g, i, b_of, a_of, g > 0 ? row.at(g - 1) : 0.0f, before, found.cell);
+    return found;
+  };
+  const Ring r0 = ring(source0, s0.i, hn::GetLane(b), hn::GetLane(a), hn::GetLane(next));
+  const Ring r1 = both ? ring(source1, s1.i, second_lane(b), second_lane(a), second_lane(next)) : r0;
+  Cell c{lanes(r0.cell[0], r1.cell[0]), zero(), lanes(r0.cell[2], r1.cell[2]), lanes(r0.cell[3], r1.cell[3])};
+  const V end = lanes(r0.cell[1], r1.cell[1]);
   c.h = hn::Sub(end, c.r0);
-  CellDraw draw(c, end, lanes(r0.below, r1.below), mass, v, rest);
+  CellDraw draw(c, end, lanes(r0.before, r1.before), mass, v, rest);
   draw.keep_off_end(both ? 0 : rim);
   return {mass, hn::MulAdd(a, width, phi0), draw.r(), draw.gap(), draw.density()};
 }
 
 /// Displacement::sample().
-HWY_INLINE InDiagrams draw_displaced(const BatchLayout& layout, const float* block, float alpha, V target, V v,
-                                     V rest) {
-  const OneSource first{block}, second{block + layout.stride};
+HWY_INLINE InDiagrams draw_displaced(const BatchLayout& layout, std::ptrdiff_t k, float alpha, V target, V v, V rest) {
+  const auto all = layout.diagrams();
+  const OneSource first(all, k), second(all, k + 1);
   const InDiagrams x = draw_maps<true>(layout, first, second, target, hn::Max(v, set(smallest_v)), rest);
   const auto other = [](V lane) HWY_ATTR { return hn::Reverse2(D(), lane); };
   const V w1 = set(alpha), w0 = hn::Sub(set(1), w1);
@@ -131,18 +126,17 @@ bool draw(const BatchLayout& layout, const BatchColour* colour, const glm::vec3&
   }
   const Folded uv = square_to_diagram(set(u.x), set(u.y), layout.half_azimuth);
   const V target = hn::Mul(uv.u, set(layout.whole_mass()));
-  const float* block = layout.values() + bracket.k * layout.stride;
   InDiagrams at;
   if (layout.angles.count > 1 && layout.interpolation == Interpolation::displacement) {
-    at = draw_displaced(layout, block, bracket.alpha, target, uv.v, uv.rest);
+    at = draw_displaced(layout, bracket.k, bracket.alpha, target, uv.v, uv.rest);
     // What takes the pdf from the direction, which vectors of two do not.
     if (HWY_UNLIKELY(hn::GetLane(uv.rest) < tail || hn::GetLane(at.gap) < rim))
       return draw_in_one_lane(layout, colour, wi, u, out);
   } else if (layout.angles.count > 1 && layout.interpolation == Interpolation::blend) {
-    const TwoSources source{block, layout.stride, 1 - bracket.alpha, bracket.alpha};
+    const TwoSources source(layout.diagrams(), bracket.k, bracket.alpha);
     at = draw_maps<false>(layout, source, source, target, uv.v, uv.rest);
   } else {
-    const OneSource source{block + (layout.angles.count > 1 && !(bracket.alpha < 0.5f) ? layout.stride : 0)};
+    const OneSource source(layout.diagrams(), bracket.k + (layout.angles.count > 1 && !(bracket.alpha < 0.5f) ? 1 : 0));
     at = draw_maps<false>(layout, source, source, target, uv.v, uv.rest);
   }
   const Drawn drawn = from_disk(layout, frame.i.theta, at.r, at.gap, at.phi, uv.sign(), at.pdf);

@@ -11,10 +11,7 @@ namespace gonio {
 
 struct Bsdf::State {
   State(const BsdfData& data, std::shared_ptr<const BrdfTable> from)
-      : layout(sampled_stack(data)),
-        colour(sampled_colour(data, from != nullptr), layout),
-        table(std::move(from)),
-        storage(data.storage) {}
+      : layout(sampled_stack(data)), colour(sampled_colour(data, from != nullptr), layout), table(std::move(from)) {}
 
   const BatchColour* own_colour() const noexcept { return table ? nullptr : &colour; }
   glm::vec3 table_value(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
@@ -26,14 +23,25 @@ struct Bsdf::State {
     return true;
   }
 
+  void draw_n(std::size_t count, ConstArrays3 wi, const float* u, const float* v, Arrays3 wo, float* pdf,
+              Arrays3 weight) const noexcept {
+    if (!table) {
+      draw_many(layout, colour, count, {wi.x, wi.y, wi.z, u, v}, {wo.x, wo.y, wo.z, pdf, weight.x, weight.y, weight.z});
+      return;
+    }
+    draw_many(layout, count, {wi.x, wi.y, wi.z, u, v}, {wo.x, wo.y, wo.z, pdf});
+    table->eval_n(count, wi, wo, weight);
+    for (std::size_t k = 0; k < count; ++k) {
+      const float scale = pdf[k] > 0 ? wo.z[k] / pdf[k] : 0.0f;
+      weight.x[k] *= scale, weight.y[k] *= scale, weight.z[k] *= scale;
+    }
+  }
+
   BatchLayout layout;
   BatchColour colour;                      // empty: f_r is the table's
   std::shared_ptr<const BrdfTable> table;  // null: f_r is the colour's
-  Storage storage;
-  MaterialHints hints{[this](const glm::vec3& wi, const glm::vec2& u) {
-    BsdfSample s;
-    return draw(wi, u, s) ? std::optional(s) : std::nullopt;
-  }};
+  MaterialHints hints{[this](std::size_t count, ConstArrays3 wi, const float* u, const float* v, Arrays3 wo, float* pdf,
+                             Arrays3 weight) { draw_n(count, wi, u, v, wo, pdf, weight); }};
 };
 
 Bsdf::Bsdf(const BsdfData& data, std::shared_ptr<const BrdfTable> table)
@@ -53,18 +61,7 @@ glm::vec3 Bsdf::eval(const glm::vec3& wi, const glm::vec3& wo) const noexcept {
 
 void Bsdf::sample_n(std::size_t count, ConstArrays3 wi, const float* u, const float* v, Arrays3 wo, float* pdf,
                     Arrays3 weight) const noexcept {
-  const State& s = *state_;
-  if (!s.table) {
-    draw_many(s.layout, s.colour, count, {wi.x, wi.y, wi.z, u, v},
-              {wo.x, wo.y, wo.z, pdf, weight.x, weight.y, weight.z});
-    return;
-  }
-  draw_many(s.layout, count, {wi.x, wi.y, wi.z, u, v}, {wo.x, wo.y, wo.z, pdf});
-  s.table->eval_n(count, wi, wo, weight);
-  for (std::size_t k = 0; k < count; ++k) {
-    const float scale = pdf[k] > 0 ? wo.z[k] / pdf[k] : 0.0f;
-    weight.x[k] *= scale, weight.y[k] *= scale, weight.z[k] *= scale;
-  }
+  state_->draw_n(count, wi, u, v, wo, pdf, weight);
 }
 
 void Bsdf::pdf_n(std::size_t count, ConstArrays3 wi, ConstArrays3 wo, float* pdf) const noexcept {
@@ -83,7 +80,6 @@ glm::vec3 Bsdf::albedo(float theta_i) const noexcept { return state_->hints.albe
 float Bsdf::roughness() const noexcept { return state_->hints.roughness(); }
 Chart Bsdf::chart() const noexcept { return state_->layout.half_chart ? Chart::half : Chart::outgoing; }
 Interpolation Bsdf::interpolation() const noexcept { return state_->layout.interpolation; }
-Storage Bsdf::storage() const noexcept { return state_->storage; }
 std::size_t Bsdf::incident_angles() const noexcept { return static_cast<std::size_t>(state_->layout.angles.count); }
 bool Bsdf::self_contained() const noexcept { return !state_->table; }
 std::size_t Bsdf::bytes() const noexcept {

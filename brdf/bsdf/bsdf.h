@@ -18,6 +18,8 @@ class BrdfTable;
 /// A measured material as a renderer holds it: importance sampling, its pdf, and f_r, one direction at a time or many
 /// at once. Loaded from a stack file by load_bsdf() in milliseconds, or made from a table by make_bsdf() in seconds.
 ///
+/// Densities and colours are held in 16 bits each (rounded16(), Colour), in the order in which they are read.
+///
 /// f_r is either colours of its own, so that sample(), pdf() and eval() agree to rounding however far the table is, or
 /// the table's.
 ///
@@ -75,7 +77,6 @@ class Bsdf {
 
   Chart chart() const noexcept;
   Interpolation interpolation() const noexcept;
-  Storage storage() const noexcept;
   std::size_t incident_angles() const noexcept;  ///< diagrams held
   bool self_contained() const noexcept;          ///< with colours of its own
   /// All memory held, the shared table apart.

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -13,34 +14,48 @@ namespace {
 constexpr int side = 32;
 constexpr float step = 2 * pi<float> / 180;
 
-/// Calls function(sample) for side x side points of the unit square.
-template <class Function>
-void for_each_draw(const MaterialHints::Draw& draw, float theta_i, const Function& function) {
-  const glm::vec3 wi(std::sin(theta_i), 0.0f, std::cos(theta_i));
-  for (int j = 0; j < side; ++j) {
-    for (int i = 0; i < side; ++i) {
-      const glm::vec2 u((static_cast<float>(i) + 0.5f) / side, (static_cast<float>(j) + 0.5f) / side);
-      if (const auto s = draw(wi, u)) function(*s);
+constexpr std::size_t count = side * side;
+
+/// Draws from points in the middle of side x side cells of the unit square, at one incident angle after the other.
+class Draws {
+ public:
+  Draws() {
+    for (std::size_t k = 0; k < count; ++k) {
+      u_[k] = (static_cast<float>(k % side) + 0.5f) / side;
+      v_[k] = (static_cast<float>(k / side) + 0.5f) / side;
     }
   }
-}
+  void draw(const MaterialHints::Draw& draw, float theta_i) {
+    std::fill_n(wi_x_, count, std::sin(theta_i)), std::fill_n(wi_z_, count, std::cos(theta_i));
+    draw(count, {wi_x_, wi_y_, wi_z_}, u_, v_, {wo_x_, wo_y_, wo_z_}, pdf_, {red_, green_, blue_});
+  }
+  glm::vec3 weight(std::size_t k) const { return {red_[k], green_[k], blue_[k]}; }
+  float wo_z(std::size_t k) const { return wo_z_[k]; }
+
+ private:
+  float wi_x_[count], wi_y_[count] = {}, wi_z_[count], u_[count], v_[count];
+  float wo_x_[count], wo_y_[count], wo_z_[count], pdf_[count], red_[count], green_[count], blue_[count];
+};
 
 }  // namespace
 
 MaterialHints::MaterialHints(const Draw& draw) {
-  for (std::size_t k = 0; k < albedo_.size(); ++k) {
+  const auto draws = std::make_unique<Draws>();
+  // Backwards, so that the last ones are at normal incidence.
+  for (std::size_t k = albedo_.size(); k-- > 0;) {
+    draws->draw(draw, static_cast<float>(k) * step);
     glm::dvec3 sum(0.0);
-    for_each_draw(draw, static_cast<float>(k) * step, [&](const BsdfSample& s) { sum += glm::dvec3(s.weight); });
-    albedo_[k] = glm::vec3(sum / double{side * side});
+    for (std::size_t i = 0; i < count; ++i) sum += glm::dvec3(draws->weight(i));
+    albedo_[k] = glm::vec3(sum / static_cast<double>(count));
   }
-  // tan(theta_h) at normal incidence, where h halves the angle of wo, and what is reflected there.
+  // tan(theta_h), where h halves the angle of wo, and what is reflected there.
   std::vector<std::pair<float, float>> slopes;
   float total = 0;
-  for_each_draw(draw, 0.0f, [&](const BsdfSample& s) {
-    const float theta_h = 0.5f * std::acos(std::min(s.wo.z, 1.0f));
-    slopes.emplace_back(std::tan(theta_h), luminance(s.weight));
-    total += luminance(s.weight);
-  });
+  for (std::size_t i = 0; i < count; ++i) {
+    const float theta_h = 0.5f * std::acos(std::min(draws->wo_z(i), 1.0f)), weight = luminance(draws->weight(i));
+    slopes.emplace_back(std::tan(theta_h), weight);
+    total += weight;
+  }
   std::sort(slopes.begin(), slopes.end());
   float below = 0;
   for (const auto& [slope, weight] : slopes) {

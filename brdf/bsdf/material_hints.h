@@ -1,22 +1,23 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <functional>
-#include <optional>
 
-#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include <gonio/brdf/value/bsdf_sample.h>
+#include <gonio/brdf/value/arrays3.h>
 
 namespace gonio {
 
 /// Bsdf::albedo() and roughness(), from draws.
 class MaterialHints {
  public:
-  using Draw = std::function<std::optional<BsdfSample>(const glm::vec3& wi, const glm::vec2& u)>;
+  /// Bsdf::sample_n().
+  using Draw = std::function<void(std::size_t count, ConstArrays3 wi, const float* u, const float* v, Arrays3 wo,
+                                  float* pdf, Arrays3 weight)>;
 
-  /// Draws side x side stratified samples at each of 45 incident angles: milliseconds.
+  /// Draws side x side stratified samples at each of 45 incident angles: a millisecond.
   explicit MaterialHints(const Draw& draw);
 
   glm::vec3 albedo(float theta_i) const noexcept;

@@ -11,7 +11,7 @@ namespace {
 constexpr int colour_side = 16;  // of stacks that no fit chooses one for
 
 BsdfData stack_data(const BrdfTable& table, const BsdfOptions& options, const Progress& progress) {
-  BsdfData data{build_stack(table, options, progress), options.interpolation, options.storage, {}};
+  BsdfData data{build_stack(table, options, progress), options.interpolation, {}};
   const Stack<float> stack = sampled_stack(data);
   if (options.f_r == BsdfValue::colour)
     data.colour = colour_of_table(table, direction_map(stack), stack.theta_i(), colour_side);
@@ -22,9 +22,12 @@ BsdfData stack_data(const BrdfTable& table, const BsdfOptions& options, const Pr
 
 Bsdf make_bsdf(std::shared_ptr<const BrdfTable> table, const BsdfOptions& options, const Progress& progress) {
   table = required_table(std::move(table), "BSDF");
-  const BsdfData data = options.interpolation == Interpolation::blend
-                            ? fit_compact(*table, options, progress).best().data
-                            : stack_data(*table, options, progress);
+  const auto fitted = [&] {
+    return options.f_r == BsdfValue::table ? fit_diagrams(*table, options, progress)
+                                           : fit_compact(*table, options, progress).best().data;
+  };
+  const BsdfData data =
+      options.interpolation == Interpolation::blend ? fitted() : stack_data(*table, options, progress);
   return options.f_r == BsdfValue::table ? Bsdf(data, std::move(table)) : Bsdf(data);
 }
 

@@ -13,8 +13,7 @@ namespace gonio {
 /// is saved once by save_stack(). With BsdfValue::table the BSDF shares the ownership of the table.
 ///
 /// If the variance asked for is out of reach within the budget, the BSDF is the nearest to it that fits.
-/// @throws Error if `table` is null, for sizes, a variance or a budget out of range, and for packed16 with another
-/// interpolation than blend.
+/// @throws Error if `table` is null, and for sizes, a variance or a budget out of range.
 Bsdf make_bsdf(std::shared_ptr<const BrdfTable> table, const BsdfOptions& options = {}, const Progress& progress = {});
 
 }  // namespace gonio

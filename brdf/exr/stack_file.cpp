@@ -1,5 +1,8 @@
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <cstring>
+#include <type_traits>
 #include <vector>
 
 #include <ImathBox.h>
@@ -22,6 +25,8 @@
 #include <gonio/mapping/base/atomic_file.h>
 #include <gonio/mapping/base/bytes.h>
 #include <gonio/mapping/base/error.h>
+#include <gonio/mapping/numeric/code16.h>
+#include <gonio/mapping/stack/rounded16.h>
 
 namespace gonio {
 namespace {
@@ -41,7 +46,7 @@ std::vector<double> to_double(const std::vector<float>& values) { return {values
 struct Part {
   Imf::Header header;
   std::vector<std::string> channels;
-  std::vector<float> pixels;  // channels interleaved
+  std::vector<std::uint16_t> pixels;  // half floats, channels interleaved
 };
 
 Part make_part(const std::string& name, int width, int height, std::vector<std::string> channels) {
@@ -49,16 +54,18 @@ Part make_part(const std::string& name, int width, int height, std::vector<std::
   part.header.setName(name);
   part.header.setType(Imf::SCANLINEIMAGE);
   part.header.compression() = Imf::ZIP_COMPRESSION;
-  for (const std::string& c : part.channels) part.header.channels().insert(c, Imf::Channel(Imf::FLOAT));
+  for (const std::string& c : part.channels) part.header.channels().insert(c, Imf::Channel(Imf::HALF));
   return part;
 }
 
-Imf::FrameBuffer frame_buffer(const std::vector<std::string>& channels, int width, float* pixels) {
+template <class Pixel>
+Imf::FrameBuffer frame_buffer(const std::vector<std::string>& channels, int width, Pixel* pixels) {
   Imf::FrameBuffer buffer;
-  const std::size_t stride = channels.size() * sizeof(float);
+  const std::size_t stride = channels.size() * sizeof(Pixel);
   for (std::size_t c = 0; c < channels.size(); ++c)
-    buffer.insert(channels[c], Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(pixels + c), stride,
-                                          stride * static_cast<std::size_t>(width)));
+    buffer.insert(channels[c],
+                  Imf::Slice(std::is_same_v<Pixel, float> ? Imf::FLOAT : Imf::HALF, reinterpret_cast<char*>(pixels + c),
+                             stride, stride * static_cast<std::size_t>(width)));
   return buffer;
 }
 
@@ -67,6 +74,15 @@ Value attribute(const std::string& file, const Imf::Header& header, const char* 
   const Attribute* found = header.findTypedAttribute<Attribute>(name);
   if (!found) fail(file, "part " + header.name() + ": attribute " + name, "none of that type", "one");
   return found->value();
+}
+
+/// What a pixel of 1 stands for.
+double scale_of(const std::string& file, const Imf::Header& header) {
+  if (header.find("gonio:scale") == header.end()) return 1;  // floats as they are
+  const float scale = attribute<Imf::FloatAttribute, float>(file, header, "gonio:scale");
+  if (!(scale > 0 && std::isfinite(scale)))
+    fail(file, "part " + header.name() + ": attribute gonio:scale", std::to_string(scale), "a positive, finite number");
+  return scale;
 }
 
 /// One of the values that have a name; `absent` for files that are older than the attribute.
@@ -94,8 +110,8 @@ std::vector<float> read_pixels(const std::string& file, Imf::MultiPartInputFile&
          std::to_string(width) + " x " + std::to_string(height) + " from 0, 0");
   for (const std::string& c : channels) {
     const Imf::Channel* channel = header.channels().findChannel(c);
-    if (!channel || channel->type != Imf::FLOAT)
-      fail(file, "part " + header.name() + ": channel " + c, "none of type FLOAT", "one");
+    if (!channel || (channel->type != Imf::FLOAT && channel->type != Imf::HALF))
+      fail(file, "part " + header.name() + ": channel " + c, "none of type HALF or FLOAT", "one");
   }
   const std::size_t values = channels.size() * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   if (values > most_values)  // a few bytes of a damaged header would ask for all memory
@@ -128,19 +144,16 @@ StackFile load(const std::string& file) {
   const int version = first.findTypedAttribute<Imf::IntAttribute>("gonio:format")
                           ? attribute<Imf::IntAttribute, int>(file, first, "gonio:format")
                           : 0;
-  if (version != stack_file_version)
+  if (version != stack_file_version && version != oldest_stack_file_version)
     fail(file, "attribute gonio:format", version ? std::to_string(version) : "none",
-         std::to_string(stack_file_version) + " (a stack file of this library)");
+         std::to_string(oldest_stack_file_version) + " or " + std::to_string(stack_file_version) +
+             " (a stack file of this library)");
   result.name = attribute<Imf::StringAttribute, std::string>(file, first, "gonio:name");
   result.source = attribute<Imf::StringAttribute, std::string>(file, first, "gonio:source");
   if (first.find("comments") != first.end())
     result.comments = attribute<Imf::StringAttribute, std::string>(file, first, "comments");
   result.bsdf.diagrams.chart = choice(file, first, "gonio:chart", charts, Chart::outgoing);
   result.bsdf.interpolation = choice(file, first, "gonio:interpolation", interpolations, Interpolation::displacement);
-  result.bsdf.storage = choice(file, first, "gonio:storage", storages, Storage::float32);
-  if (result.bsdf.storage == Storage::packed16 && result.bsdf.interpolation != Interpolation::blend)
-    fail(file, "attribute gonio:interpolation", to_string(result.bsdf.interpolation),
-         "blend with gonio:storage packed16");
 
   for (int k = 0; k < input.parts(); ++k) {
     const Imf::Header& header = input.header(k);
@@ -156,8 +169,10 @@ StackFile load(const std::string& file) {
         fail(file, "part colour", "no cells or no gonio:theta_i", "some");
       const auto pixels =
           read_pixels(file, input, k, side, static_cast<int>(theta_i.size()) * (side / 2), {"R", "G", "B"});
+      const auto scale = static_cast<float>(scale_of(file, header));
       std::vector<glm::vec3> values(pixels.size() / 3);
-      for (std::size_t i = 0; i < values.size(); ++i) values[i] = {pixels[3 * i], pixels[3 * i + 1], pixels[3 * i + 2]};
+      for (std::size_t i = 0; i < values.size(); ++i)
+        values[i] = scale * glm::vec3(pixels[3 * i], pixels[3 * i + 1], pixels[3 * i + 2]);
       result.bsdf.colour = Colour(std::move(theta_i), side, values);
       continue;
     }
@@ -171,6 +186,8 @@ StackFile load(const std::string& file) {
     const int m = checked_size(file, field + "gonio:phi", grid.phi.size());
     const int n = checked_size(file, field + "gonio:r", grid.r.size());
     grid.density = to_double(read_pixels(file, input, k, n, m, {"Y"}));
+    const double scale = scale_of(file, header);
+    for (double& density : grid.density) density *= scale;
     result.bsdf.diagrams.theta_i.push_back(attribute<Imf::FloatAttribute, float>(file, header, "gonio:theta_i"));
     result.bsdf.diagrams.diagrams.push_back(std::move(grid));
   }
@@ -180,26 +197,35 @@ StackFile load(const std::string& file) {
 }  // namespace
 
 void save_stack(const std::filesystem::path& path, const StackFile& file) {
-  std::vector<Part> parts;
-  for (std::size_t k = 0; k < file.bsdf.diagrams.theta_i.size(); ++k) {
-    const DiagramGrid& grid = file.bsdf.diagrams.diagrams[k];
-    if (grid.azimuth != Azimuth::half)
+  if (file.bsdf.diagrams.theta_i.empty()) fail(path.string(), "diagrams", "none", "at least one");
+  for (std::size_t k = 0; k < file.bsdf.diagrams.diagrams.size(); ++k)
+    if (file.bsdf.diagrams.diagrams[k].azimuth != Azimuth::half)
       fail(path.string(), "diagram " + std::to_string(k), "a full azimuth", "half, mirrored");
+  const StackGrid diagrams = rounded16(file.bsdf.diagrams);
+  std::vector<Part> parts;
+  for (std::size_t k = 0; k < diagrams.theta_i.size(); ++k) {
+    const DiagramGrid& grid = diagrams.diagrams[k];
     Part part = make_part(diagram_name(k), static_cast<int>(grid.r.size()), static_cast<int>(grid.phi.size()), {"Y"});
-    part.header.insert("gonio:theta_i", Imf::FloatAttribute(static_cast<float>(file.bsdf.diagrams.theta_i[k])));
+    part.header.insert("gonio:theta_i", Imf::FloatAttribute(static_cast<float>(diagrams.theta_i[k])));
     part.header.insert("gonio:phi", Imf::FloatVectorAttribute(to_float(grid.phi)));
     part.header.insert("gonio:r", Imf::FloatVectorAttribute(to_float(grid.r)));
-    part.pixels = to_float(grid.density);
+    const double largest = *std::max_element(grid.density.begin(), grid.density.end());
+    part.header.insert("gonio:scale", Imf::FloatAttribute(static_cast<float>(largest) * half_unit));
+    for (const double density : grid.density) part.pixels.push_back(encode16(density / largest));
     parts.push_back(std::move(part));
   }
-  if (parts.empty()) fail(path.string(), "diagrams", "none", "at least one");
   if (!file.bsdf.colour.empty()) {
     const int side = file.bsdf.colour.side();
     Part part =
         make_part("colour", side, static_cast<int>(file.bsdf.colour.theta_i().size()) * (side / 2), {"R", "G", "B"});
     part.header.insert("gonio:theta_i", Imf::FloatVectorAttribute(file.bsdf.colour.theta_i()));
-    part.header.insert("gonio:units", Imf::StringAttribute("W = f_r cos(theta_o) / pdf, linear Rec. 709"));
-    for (const glm::vec3& w : file.bsdf.colour.values()) part.pixels.insert(part.pixels.end(), {w.r, w.g, w.b});
+    part.header.insert("gonio:units",
+                       Imf::StringAttribute("pixel x gonio:scale is W = f_r cos(theta_o) / pdf, linear Rec. 709"));
+    part.header.insert(
+        "gonio:scale",
+        Imf::FloatAttribute(file.bsdf.colour.largest() > 0 ? file.bsdf.colour.largest() * half_unit : 1.0f));
+    const auto codes = file.bsdf.colour.codes().begin();
+    part.pixels.assign(codes, codes + static_cast<std::ptrdiff_t>(3 * file.bsdf.colour.cells()));
     parts.push_back(std::move(part));
   }
   Imf::Header& first = parts.front().header;
@@ -208,10 +234,10 @@ void save_stack(const std::filesystem::path& path, const StackFile& file) {
   first.insert("gonio:name", Imf::StringAttribute(file.name));
   first.insert("gonio:source", Imf::StringAttribute(file.source));
   if (!file.comments.empty()) first.insert("comments", Imf::StringAttribute(file.comments));
-  first.insert("gonio:chart", Imf::StringAttribute(to_string(file.bsdf.diagrams.chart)));
+  first.insert("gonio:chart", Imf::StringAttribute(to_string(diagrams.chart)));
   first.insert("gonio:interpolation", Imf::StringAttribute(to_string(file.bsdf.interpolation)));
-  first.insert("gonio:storage", Imf::StringAttribute(to_string(file.bsdf.storage)));
-  first.insert("gonio:units", Imf::StringAttribute("pdf per 2 r dr dphi in 1/sr; angles in radians"));
+  first.insert("gonio:units",
+               Imf::StringAttribute("pixel x gonio:scale is the pdf per 2 r dr dphi in 1/sr; angles in radians"));
   first.insert("gonio:layout",
                Imf::StringAttribute("one part per incident angle: columns r, rows phi in 0..pi, mirrored"));
 

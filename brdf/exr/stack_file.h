@@ -11,18 +11,18 @@ namespace gonio {
 /// A stack of diagrams as an OpenEXR file, readable by any viewer of multi-part images. The layout
 /// is described in docs/formats/stack-file.md.
 struct StackFile {
-  BsdfData bsdf;              ///< densities normalised; without colours f_r is that of the table
+  BsdfData bsdf;              ///< without colours f_r is that of the table
   std::string name;           ///< of the material
   std::string source;         ///< file the stack was made of, without its folder; empty if unknown
   std::string comments = {};  ///< how it was made, who measured it, its licence: lines for people; may be empty
 };
 
-/// Version of the layout that save_stack() writes; load_stack() reads this one only.
-inline constexpr int stack_file_version = 2;
+/// Version of the layout that save_stack() writes, and the oldest one that load_stack() reads.
+inline constexpr int stack_file_version = 3, oldest_stack_file_version = 2;
 
-/// Writes `file`, replacing the target as a whole or leaving it as it was. Values are stored as 32-bit
-/// floats: what comes from a Stack<float>, a PackedStack or was loaded from a stack file survives bit by bit.
-/// @throws Error if the path cannot be written.
+/// Writes `file`, replacing the target as a whole or leaving it as it was. Densities are rounded16(): what a Bsdf
+/// samples, and what was loaded from a file, survives bit by bit.
+/// @throws Error if the path cannot be written, and as rounded16() does.
 void save_stack(const std::filesystem::path& path, const StackFile& file);
 
 /// @throws Error naming the part and the field if the file is not a stack file, is damaged, or has

@@ -53,7 +53,6 @@ Subject subject_of(const StackBsdf& bsdf) {
 }
 
 Subject subject_of(const Stack<float>& stack) { return subject_of_stack(stack); }
-Subject subject_of(const PackedStack& stack) { return subject_of_stack(stack); }
 
 glm::dvec3 albedo(const Subject& subject, double theta_i) {
   const glm::vec3 wi = incident(theta_i);

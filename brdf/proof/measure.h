@@ -8,7 +8,7 @@
 #include <gonio/brdf/bsdf/bsdf.h>
 #include <gonio/brdf/proof/samplers/stack_bsdf.h>
 #include <gonio/brdf/proof/statistics/chi_square.h>
-#include <gonio/mapping/stack/packed_stack.h>
+#include <gonio/mapping/stack/stack.h>
 
 namespace gonio::proof {
 
@@ -38,7 +38,6 @@ Subject subject_of(const StackBsdf& bsdf);
 /// A stack alone, without a BRDF: weights are 1, and `f_r` is empty. measure() cannot take it,
 /// check_invariants() can. The stack must outlive it.
 Subject subject_of(const Stack<float>& stack);
-Subject subject_of(const PackedStack& stack);
 
 struct MeasureOptions {
   int grid = 256;                       ///< relvar is measured on grid x grid jittered points of the square

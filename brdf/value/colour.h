@@ -40,6 +40,9 @@ class Colour {
   const std::vector<float>& theta_i() const noexcept { return theta_i_; }
   /// As they are stored; a colour made of them equals this one bit by bit.
   std::vector<glm::vec3> values() const;
+  /// As they are stored, R, G, B in turn, and one more; in units of largest().
+  const std::vector<std::uint16_t>& codes() const noexcept { return codes_; }
+  float largest() const noexcept { return largest_; }
   std::size_t bytes() const noexcept {
     return sizeof(*this) + theta_i_.capacity() * sizeof(float) + codes_.capacity() * sizeof(std::uint16_t);
   }

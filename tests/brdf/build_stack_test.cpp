@@ -20,7 +20,7 @@ const BrdfTable& specular_table() {
 
 BsdfOptions displacement() {
   BsdfOptions options;
-  options.interpolation = Interpolation::displacement, options.storage = Storage::float32;
+  options.interpolation = Interpolation::displacement;
   return options;
 }
 

@@ -37,9 +37,7 @@ const StackGrid& coarse_grid() {
   return grid;
 }
 
-StackBsdf coarse(Interpolation interpolation) {
-  return StackBsdf({coarse_grid(), interpolation, Storage::float32, {}}, shared_table());
-}
+StackBsdf coarse(Interpolation interpolation) { return StackBsdf({coarse_grid(), interpolation, {}}, shared_table()); }
 
 constexpr double theta_i = 0.65;  // half way between two of the seven
 

@@ -12,22 +12,9 @@
 #include <gonio/brdf/proof/gallery.h>
 #include <gonio/brdf/proof/samplers/stack_bsdf.h>
 #include <gonio/brdf/proof/statistics/random.h>
-#include <gonio/mapping/stack/packed_stack.h>
 
 namespace gonio {
 namespace {
-
-double use(const PackedStack& stack) {
-  proof::Random random(11);
-  double total = 0;
-  for (int k = 0; k < 5000; ++k) {
-    const float theta = 1.5f * random();
-    const glm::vec2 u = random.pair();
-    const auto s = stack.sample(theta, u.x, u.y);
-    total += s.pdf + stack.pdf(theta, s.wo) + stack.invert(theta, s.wo).has_value();
-  }
-  return total;
-}
 
 template <class S>
 double use_bsdf(const S& bsdf) {
@@ -80,7 +67,7 @@ TEST(Concurrency, SamplersAreShared) {
   BsdfOptions small;
   small.interpolation = Interpolation::displacement;
   small.incident = small.meridians = small.parallels = 8;
-  BsdfData data{build_stack(*table, small), Interpolation::displacement, Storage::float32, {}};
+  BsdfData data{build_stack(*table, small), Interpolation::displacement, {}};
   share(Bsdf(data, table));
   share(StackBsdf(data, table));
   const Stack<float> stack = sampled_stack(data);
@@ -88,8 +75,7 @@ TEST(Concurrency, SamplersAreShared) {
   share(Bsdf(data));
   share(StackBsdf(data));
   small.chart = Chart::half, small.interpolation = Interpolation::blend;
-  data = {build_stack(*table, small), Interpolation::blend, Storage::packed16, data.colour};
-  share(PackedStack(data.diagrams));
+  data = {build_stack(*table, small), Interpolation::blend, data.colour};
   share(Bsdf(data));
 }
 

@@ -25,7 +25,7 @@
 #include <gonio/brdf/proof/samplers/stack_bsdf.h>
 #include <gonio/mapping/base/bytes.h>
 #include <gonio/mapping/base/error.h>
-#include <gonio/mapping/stack/packed_stack.h>
+#include <gonio/mapping/stack/rounded16.h>
 
 #include "tests/support/files.h"
 
@@ -64,9 +64,8 @@ StackFile make_file(int angles = 3, int side = 4) {
     grid.diagrams.push_back(std::move(diagram));
   }
   StackFile file;
-  file.bsdf.diagrams = Stack<float>(grid, Interpolation::displacement).grid();
+  file.bsdf.diagrams = rounded16(grid);
   file.bsdf.interpolation = Interpolation::displacement;
-  file.bsdf.storage = Storage::float32;
   std::vector<glm::vec3> values(angles * side * (side / 2));
   for (glm::vec3& w : values) w = {uniform(random), 1e-30f, 100 * uniform(random)};
   std::vector<float> theta_i;
@@ -92,9 +91,8 @@ StackFile make_packed_file() {
   }
   StackFile file = make_file();
   file.comments = "made by hand\nCC0, \xc3\xa9";
-  file.bsdf.diagrams = PackedStack(grid).grid();
+  file.bsdf.diagrams = rounded16(grid);
   file.bsdf.interpolation = Interpolation::blend;
-  file.bsdf.storage = Storage::packed16;
   file.bsdf.colour = Colour({0.1f, 0.9f, 1.0f, 1.2f}, 2, std::vector<glm::vec3>(8, glm::vec3(0.2f, 0.4f, 0.6f)));
   return file;
 }
@@ -181,12 +179,8 @@ TEST_F(StackFileTest, RoundTripIsBitExact) {
   for (const StackFile& saved : {make_file(), make_packed_file()}) {
     save_stack(path("a.exr"), saved);
     const StackFile loaded = load_stack(path("a.exr"));
-    if (saved.bsdf.storage == Storage::packed16) {  // as it is sampled; the file has floats of that
-      expect_same(saved.bsdf.diagrams, PackedStack(loaded.bsdf.diagrams).grid());
-    } else {
-      expect_same(saved.bsdf.diagrams, loaded.bsdf.diagrams);
-      expect_same(saved.bsdf.diagrams, Stack<float>(loaded.bsdf.diagrams, saved.bsdf.interpolation).grid());
-    }
+    expect_same(saved.bsdf.diagrams, loaded.bsdf.diagrams);
+    expect_same(sampled_stack(saved.bsdf).grid(), sampled_stack(loaded.bsdf).grid());
     EXPECT_EQ(saved.bsdf.colour.side(), loaded.bsdf.colour.side());
     EXPECT_EQ(saved.bsdf.colour.theta_i(), loaded.bsdf.colour.theta_i());
     EXPECT_EQ(saved.bsdf.colour.values(), loaded.bsdf.colour.values());
@@ -195,7 +189,6 @@ TEST_F(StackFileTest, RoundTripIsBitExact) {
     EXPECT_EQ(saved.comments, loaded.comments);
     EXPECT_EQ(saved.bsdf.diagrams.chart, loaded.bsdf.diagrams.chart);
     EXPECT_EQ(saved.bsdf.interpolation, loaded.bsdf.interpolation);
-    EXPECT_EQ(saved.bsdf.storage, loaded.bsdf.storage);
     save_stack(path("b.exr"), loaded);
     EXPECT_EQ(read_bytes(path("a.exr")), read_bytes(path("b.exr")));
   }
@@ -215,7 +208,6 @@ TEST_F(StackFileTest, LoadedBsdfIsTheSavedOne) {
   const StackFile file = make_file();
   save_stack(path("a.exr"), file);
   const Bsdf saved(file.bsdf), loaded = load_bsdf(path("a.exr"));
-  EXPECT_EQ(loaded.storage(), Storage::float32);
   const glm::vec3 wi(0.6f, 0, 0.8f);
   for (int k = 0; k < 64; ++k) {
     const glm::vec2 u((static_cast<float>(k % 8) + 0.5f) / 8, (static_cast<float>(k / 8) + 0.5f) / 8);
@@ -296,7 +288,7 @@ std::string not_finite(const S& bsdf) {
 /// All numbers that are sampled: the same for files that differ elsewhere.
 std::string content(const BsdfData& data) {
   std::string all(to_string(data.diagrams.chart));
-  (all += to_string(data.interpolation)) += to_string(data.storage);
+  all += to_string(data.interpolation);
   const auto add = [&all](const auto& values) {
     all.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(values[0]));
   };
@@ -391,11 +383,9 @@ constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 using Parts = std::vector<RawPart>;
 const Fault faults[] = {
     {"Version", [](Parts& p) { p[0].header.insert("gonio:format", Imf::IntAttribute(1)); },
-     "attribute gonio:format: found 1, expected 2"},
-    {"Storage", [](Parts& p) { p[0].header.insert("gonio:storage", Imf::StringAttribute("clay")); },
-     "attribute gonio:storage: found clay, expected one of packed16, float32"},
-    {"PackedDisplacement", [](Parts& p) { p[0].header.insert("gonio:storage", Imf::StringAttribute("packed16")); },
-     "attribute gonio:interpolation: found displacement, expected blend with gonio:storage packed16"},
+     "attribute gonio:format: found 1, expected 2 or 3"},
+    {"Scale", [](Parts& p) { p[1].header.insert("gonio:scale", Imf::FloatAttribute(0)); },
+     "part diagram.001: attribute gonio:scale: found 0.000000, expected a positive, finite number"},
     {"ColourWithoutAngles", [](Parts& p) { p[2].header = without(p[2].header, "gonio:theta_i"); },
      "part colour: attribute gonio:theta_i"},
     {"ColourAnglesNotAscending",

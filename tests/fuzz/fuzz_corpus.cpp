@@ -5,7 +5,7 @@
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/brdf/ndf/image/disk_image_file.h>
 #include <gonio/fitting/model/model.h>
-#include <gonio/mapping/stack/packed_stack.h>
+#include <gonio/mapping/stack/rounded16.h>
 
 #include "tests/support/light_cases.h"
 #include "tests/support/table_files.h"
@@ -52,7 +52,6 @@ int main(int argc, char** argv) {
   gonio::StackFile stack;
   stack.name = "corpus";
   stack.bsdf.interpolation = gonio::Interpolation::displacement;
-  stack.bsdf.storage = gonio::Storage::float32;
   stack.bsdf.diagrams = gonio::Stack<float>(small_stack(), gonio::Interpolation::displacement).grid();
   fs::create_directories(folder / "stack");
   gonio::save_stack(folder / "stack" / "bare.exr", stack);
@@ -60,8 +59,7 @@ int main(int argc, char** argv) {
   gonio::save_stack(folder / "stack" / "colour.exr", stack);
   for (auto& diagram : stack.bsdf.diagrams.diagrams) diagram = stack.bsdf.diagrams.diagrams.front();
   stack.bsdf.interpolation = gonio::Interpolation::blend;
-  stack.bsdf.storage = gonio::Storage::packed16;
-  stack.bsdf.diagrams = gonio::PackedStack(stack.bsdf.diagrams).grid();
+  stack.bsdf.diagrams = gonio::rounded16(stack.bsdf.diagrams);
   gonio::save_stack(folder / "stack" / "packed.exr", stack);
 
   fs::create_directories(folder / "image");

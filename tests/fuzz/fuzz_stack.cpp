@@ -1,6 +1,5 @@
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/mapping/base/error.h>
-#include <gonio/mapping/stack/packed_stack.h>
 
 #include "tests/fuzz/memory_file.h"
 
@@ -22,10 +21,7 @@ void draw(const S& map) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {
     const gonio::StackFile file = gonio::load_stack(gonio::fuzz::memory_file(data, size));
-    if (file.bsdf.storage == gonio::Storage::packed16)
-      draw(gonio::PackedStack(file.bsdf.diagrams));
-    else
-      draw(gonio::Stack<float>(file.bsdf.diagrams, file.bsdf.interpolation));
+    draw(gonio::sampled_stack(file.bsdf));
   } catch (const gonio::Error&) {
   }
   return 0;

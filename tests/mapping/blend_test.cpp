@@ -148,7 +148,7 @@ StackGrid half_vector_stack(const BrdfTable& table, std::size_t budget) {
 // No energy is lost at the horizon: the mean weight is the albedo by quadrature, at every angle.
 TEST(HalfVectorStack, KeepsTheEnergy) {
   const auto table = std::make_shared<const BrdfTable>(to_table(gallery_table("asymmetric")));
-  const Bsdf bsdf({half_vector_stack(*table, 64 * 1024), Interpolation::blend, Storage::float32, {}}, table);
+  const Bsdf bsdf({half_vector_stack(*table, 64 * 1024), Interpolation::blend, {}}, table);
   for (const double degrees : {2, 10, 30, 50, 70, 80, 85, 89}) {
     const auto q = proof::measure(proof::subject_of(bsdf), degrees * pi<double> / 180);
     EXPECT_NEAR(luminance(glm::vec3(q.albedo)) / luminance(glm::vec3(q.albedo_table)), 1, 5e-4) << degrees;
@@ -158,7 +158,7 @@ TEST(HalfVectorStack, KeepsTheEnergy) {
 
 TEST(HalfVectorStack, SelfContainedAgreesWithItself) {
   const auto table = std::make_shared<const BrdfTable>(to_table(gallery_table("asymmetric")));
-  BsdfData data{half_vector_stack(*table, 32 * 1024), Interpolation::blend, Storage::float32, {}};
+  BsdfData data{half_vector_stack(*table, 32 * 1024), Interpolation::blend, {}};
   const Stack<float> stack = sampled_stack(data);
   data.colour = colour_of_table(*table, direction_map(stack), stack.theta_i(), 16);
   const Bsdf bsdf(data);

@@ -22,7 +22,7 @@ std::shared_ptr<const BrdfTable> table_of(const char* description) {
 
 Bsdf make_material() {
   BsdfOptions options;
-  options.interpolation = Interpolation::displacement, options.storage = Storage::float32;
+  options.interpolation = Interpolation::displacement;
   options.incident = options.meridians = options.parallels = 24;
   return make_bsdf(table_of("ggx:alpha=0.3,F0=0.4/0.3/0.2+lambert:albedo=0.3/0.2/0.1"), options);
 }

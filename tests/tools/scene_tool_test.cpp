@@ -6,11 +6,11 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <gonio/brdf/batch/batch_layout.h>
 #include <gonio/brdf/build/budget/incidence_profile.h>
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/fitting/model/synth.h>
 #include <gonio/mapping/base/bytes.h>
-#include <gonio/mapping/stack/packed_stack.h>
 
 #include "tests/support/table_files.h"
 #include "tests/support/tool_fixture.h"
@@ -161,7 +161,7 @@ TEST_F(SceneToolTest, SplitsTheBytesWhereTheyCount) {
     const std::string name = material["name"];
     EXPECT_NE(out.find("\n" + name + " "), std::string::npos) << out;
     const StackFile file = load_stack(path("stacks") / material["file"].get<std::string>());
-    EXPECT_EQ(PackedStack(file.bsdf.diagrams).bytes() + file.bsdf.colour.bytes(), material["bytes"]) << name;
+    EXPECT_EQ(BatchLayout(sampled_stack(file.bsdf)).bytes() + file.bsdf.colour.bytes(), material["bytes"]) << name;
     EXPECT_EQ(load_stack(path("stacks/" + name + ".exr")).name, name);
     EXPECT_TRUE(Bsdf(file.bsdf).self_contained()) << name;
     bytes += material["bytes"].get<std::size_t>();

@@ -121,8 +121,7 @@ BsdfData coloured(Interpolation interpolation, Chart chart) {
   const StackGrid grid = lobe_stack(32, 33, 33, chart);
   std::vector<float> theta_i;
   for (const double theta : grid.theta_i) theta_i.push_back(static_cast<float>(theta));
-  return {grid, interpolation, Storage::float32,
-          Colour(theta_i, 8, std::vector<glm::vec3>(32 * 32, glm::vec3(0.5f, 0.4f, 0.3f)))};
+  return {grid, interpolation, Colour(theta_i, 8, std::vector<glm::vec3>(32 * 32, glm::vec3(0.5f, 0.4f, 0.3f)))};
 }
 
 enum class Call { sample, pdf, eval };
@@ -191,7 +190,7 @@ void rgl_displacement(benchmark::State& state, Form form) {
     options.interpolation = Interpolation::displacement;
     options.meridians = options.parallels = 40;
     options.budget = 480 * 1024;
-    BsdfData made{build_stack(*table, options), options.interpolation, Storage::float32, {}};
+    BsdfData made{build_stack(*table, options), options.interpolation, {}};
     const Stack<float> stack = sampled_stack(made);
     made.colour = colour_of_table(*table, direction_map(stack), stack.theta_i(), 8);
     return made;
@@ -199,10 +198,25 @@ void rgl_displacement(benchmark::State& state, Form form) {
   look_up(state, form, Call::sample, data);
 }
 
+/// One draw at a time from 1,000 materials in turn, as a path tracer meets them: nothing that is read is in a cache.
+void bsdf_cold(benchmark::State& state, Interpolation interpolation, Chart chart) {
+  constexpr std::size_t materials = 1000;
+  const BsdfData data = coloured(interpolation, chart);
+  std::vector<Bsdf> bsdfs;
+  for (std::size_t k = 0; k < materials; ++k) bsdfs.emplace_back(data);
+  const Directions d(std::make_shared<const BrdfTable>(made_grid()));
+  std::size_t n = 0;
+  for (auto _ : state)
+    for (std::size_t k = 0; k < queries; ++k, ++n)
+      benchmark::DoNotOptimize(bsdfs[n * 619 % materials].sample(d.wi[k], d.u[k]));
+  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * queries));
+}
+
 const int registered = [] {
   for (const auto& [interpolation, chart] :
        {std::pair{Interpolation::displacement, Chart::outgoing}, {Interpolation::blend, Chart::half}}) {
     const std::string name = std::string("/") + to_string(interpolation) + "/" + to_string(chart);
+    benchmark::RegisterBenchmark(("rgb_sample_cold" + name).c_str(), bsdf_cold, interpolation, chart);
     for (const auto& [call, verb] : {std::pair{Call::sample, "sample"}, {Call::pdf, "pdf"}, {Call::eval, "eval"}})
       for (const auto& [form, end] : forms)
         benchmark::RegisterBenchmark((std::string("rgb_") + verb + end + name).c_str(),

@@ -88,7 +88,7 @@ void add_stack_request(CLI::App& verb, StackRequest& request) {
           [&request](const std::string& text) {
             request.interpolation = text == "blend" ? Interpolation::blend : Interpolation::displacement;
           },
-          "Sizes by hand, 32-bit densities, and this between incident angles [displacement]")
+          "Sizes by hand, and this between incident angles [displacement]")
       ->check(known_word({"displacement", "blend"}))
       ->type_name("displacement|blend")
       ->group(by_hand);

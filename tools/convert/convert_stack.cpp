@@ -59,7 +59,7 @@ void by_hand(const std::filesystem::path& in, const std::filesystem::path& out, 
     ProgressLine progress("building the stack of " + in.string());
     const Stack<float> stack(build_stack(table, options, [&](double share) { progress.update(share); }),
                              options.interpolation);
-    file.bsdf = {stack.grid(), options.interpolation, Storage::float32,
+    file.bsdf = {stack.grid(), options.interpolation,
                  colour_of_table(table, direction_map(stack), stack.theta_i(), colour_side)};
   }
   save_stack(out, file);

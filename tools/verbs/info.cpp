@@ -9,6 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <gonio/brdf/batch/batch_layout.h>
 #include <gonio/brdf/exr/stack_file.h>
 #include <gonio/brdf/table/albedo.h>
 #include <gonio/brdf/table/flat_from.h>
@@ -16,7 +17,6 @@
 #include <gonio/fitting/model/model.h>
 #include <gonio/mapping/base/bytes.h>
 #include <gonio/mapping/base/error.h>
-#include <gonio/mapping/stack/packed_stack.h>
 
 #include "tools/cli/failures.h"
 #include "tools/cli/input.h"
@@ -227,11 +227,9 @@ void describe_stack(Facts& facts, const std::string& path) {
            range(diagrams, [](const DiagramGrid& d) { return d.r.size(); }) + " parallels");
   angles(facts, file.bsdf.diagrams.theta_i.front(), file.bsdf.diagrams.theta_i.back());
   file_bytes(facts, regular_file_size(path));
-  const bool packed = file.bsdf.storage == Storage::packed16;
-  const std::size_t bytes = packed ? PackedStack(file.bsdf.diagrams).bytes()
-                                   : Stack<float>(file.bsdf.diagrams, file.bsdf.interpolation).bytes();
-  line(facts, "diagrams", bytes_text(bytes) + " at " + (packed ? "16" : "32") + " bits a crossing");
-  facts.json["diagrams"] = {{"count", diagrams.size()}, {"bytes", bytes}, {"bits_a_crossing", packed ? 16 : 32}};
+  const std::size_t bytes = BatchLayout(sampled_stack(file.bsdf)).bytes();
+  line(facts, "diagrams", bytes_text(bytes) + " as they are sampled, 16 bits a crossing");
+  facts.json["diagrams"] = {{"count", diagrams.size()}, {"bytes", bytes}};
   if (file.bsdf.colour.empty()) {
     line(facts, "colour", "none: sampling needs the table as well");
     facts.json["colour"] = nullptr;
@@ -244,7 +242,7 @@ void describe_stack(Facts& facts, const std::string& path) {
   facts.json["colour"] = {
       {"side", colour.side()}, {"incident_angles", colour.theta_i().size()}, {"bytes", colour.bytes()}};
   const Bsdf sampler(file.bsdf);
-  line(facts, "in memory", bytes_text(sampler.bytes()) + " as it is sampled");
+  line(facts, "in memory", bytes_text(sampler.bytes()) + " in all");
   facts.json["memory_bytes"] = sampler.bytes();
   add_albedo(facts, [&](float theta_i) {
     constexpr int side = 128;

@@ -32,12 +32,12 @@ HWY_INLINE void find_colours(const BatchColour& colour, std::size_t count, const
     const VI j = hn::Min(truncated(y), set_int(colour.last_row));
     const VI cell = hn::Add(hn::Mul(hn::Load(DI(), brackets.k + k), set_int(colour.layer)),
                             hn::Add(hn::Mul(j, set_int(colour.side)), i));
-    hn::Store(hn::ShiftLeft<2>(cell), DI(), cells + k);
+    hn::Store(hn::Mul(cell, set_int(3)), DI(), cells + k);
     hn::Store(hn::Sub(x, hn::ConvertTo(d, i)), d, a + k);
     hn::Store(hn::Sub(y, hn::ConvertTo(d, j)), d, b + k);
   }
   for (std::size_t k = 0; k < count; ++k)
-    mix_cells(colour, colour.values.data() + cells[k], a[k], b[k], brackets.alpha[k], rgb + 4 * k);
+    mix_cells(colour, colour.codes.data() + cells[k], a[k], b[k], brackets.alpha[k], rgb + 4 * k);
   for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
     V r, g, w, unused;
     load4(rgb + 4 * k, r, g, w, unused);

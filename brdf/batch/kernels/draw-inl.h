@@ -28,82 +28,54 @@ struct MapBlock {
   HWY_ALIGN float
       cell[4 * size];  // phi, mass, phi, mass of the meridians, then r, r, density, density of the parallels about it
   HWY_ALIGN Floats a, b, phi, mass, r, gap, pdf;  // b = 1 - a
-  HWY_ALIGN int block[size];                      // of the diagram, the first of two: its place in layout.values
+  HWY_ALIGN int diagram[size];                    // the first of two
   int group[size], meridian[size];
 };
 
-// A search has two steps, the group and the cell, in loops of their own: what the second one reads is on its way by
-// then.
-
-template <std::size_t size, class SourceOf>
-HWY_INLINE void find_meridian_groups(const BatchLayout& layout, std::size_t count, MapBlock<size>& map,
-                                     const SourceOf& source_of) {
-  const std::ptrdiff_t before = layout.before_meridians, groups = layout.meridian_groups, across = layout.across;
-  for (std::size_t k = 0; k < count; ++k) {
-    const auto source = source_of(k);
-    const std::ptrdiff_t g = count_below<true>(source.row(before), 0, across - 1, map.target[k]);
-    source.row(groups + g * BatchLayout::meridian_group).prefetch();
-    map.group[k] = static_cast<int>(g);
-  }
-}
+// What a loop reads is on its way by the end of the one before.
 
 template <std::size_t size, class SourceOf>
 HWY_INLINE void find_meridians(const BatchLayout& layout, std::size_t count, MapBlock<size>& map,
                                const SourceOf& source_of) {
-  constexpr std::ptrdiff_t cells = BatchLayout::group;
-  const std::ptrdiff_t groups = layout.meridian_groups, before = layout.before_parallels,
-                       before_row = layout.before_row;
+  const std::ptrdiff_t length = layout.groups - 1;
   for (std::size_t k = 0; k < count; ++k) {
     const auto source = source_of(k);
-    const std::ptrdiff_t g = map.group[k];
-    const auto group = source.row(groups + g * BatchLayout::meridian_group);
-    const std::ptrdiff_t in_group = find_in_group(group, map.target[k]), i = g * cells + in_group;
-    copy_values<4>(group, cells + 1 + 2 * in_group, map.cell + 4 * k);
-    map.below[k] = group.at(in_group), map.meridian[k] = static_cast<int>(i);
-    source.row(before + i * before_row).prefetch();
+    const std::ptrdiff_t i = find_meridian(layout, source, map.target[k]);
+    source.row(layout.starts + i * length).prefetch();
+    copy_meridians(layout, source, i, map.cell + 4 * k);
+    map.below[k] = source.row(layout.before).at(i), map.meridian[k] = static_cast<int>(i);
   }
 }
 
 template <std::size_t size, class SourceOf>
-HWY_INLINE void find_parallel_groups(const BatchLayout& layout, std::size_t count, MapBlock<size>& map,
-                                     const SourceOf& source_of) {
-  constexpr std::ptrdiff_t floats = BatchLayout::parallel_group;
-  const std::ptrdiff_t before = layout.before_parallels, before_row = layout.before_row,
-                       groups = layout.parallel_groups, along = layout.along;
+HWY_INLINE void find_groups(const BatchLayout& layout, std::size_t count, MapBlock<size>& map,
+                            const SourceOf& source_of) {
+  const std::ptrdiff_t length = layout.groups - 1;
   for (std::size_t k = 0; k < count; ++k) {
     const auto source = source_of(k);
     const std::ptrdiff_t i = map.meridian[k];
-    const auto row = source.row(before + i * before_row, before_row, map.b[k], map.a[k]);
-    const std::ptrdiff_t g = i * along + count_below<true>(row, 0, along - 1, map.target[k]);
-    source.row(groups + g * floats, along * floats, 0, 0).prefetch();
-    map.group[k] = static_cast<int>(g);
+    const auto row = starts(layout, source, i, map.b[k], map.a[k]);
+    const std::ptrdiff_t g = count_below(row, 0, length, map.target[k]);
+    source.group(group_index(layout, g, i), 0, 0).prefetch();
+    map.group[k] = static_cast<int>(g), map.below[k] = g > 0 ? row.at(g - 1) : 0.0f;
   }
 }
 
 template <std::size_t size, class SourceOf>
 HWY_INLINE void find_parallels(const BatchLayout& layout, std::size_t count, MapBlock<size>& map,
                                const SourceOf& source_of) {
-  constexpr std::ptrdiff_t cells = BatchLayout::group, floats = BatchLayout::parallel_group;
-  const std::ptrdiff_t groups = layout.parallel_groups, along = layout.along, r = layout.r;
   for (std::size_t k = 0; k < count; ++k) {
-    const auto source = source_of(k);
-    const std::ptrdiff_t g = map.group[k];
-    const auto group = source.row(groups + g * floats, along * floats, map.b[k], map.a[k]);
-    const std::ptrdiff_t in_group = find_in_group(group, map.target[k]);
-    copy_values<2>(Row{source.block + r}, (g - map.meridian[k] * along) * cells + in_group, map.cell + 4 * k);
-    copy_values<2>(group, cells + in_group, map.cell + 4 * k + 2);
-    map.below[k] = group.at(in_group);
+    map.below[k] = find_in_group(layout, source_of(k), map.group[k], map.meridian[k], map.b[k], map.a[k], map.below[k],
+                                 map.target[k], map.cell + 4 * k);
   }
 }
 
-/// Diagram::meridian_at() and parallel_at() of `count` elements with their `block` and `target`, the mass before the
-/// meridian; v(k) is the other uniform number of the elements from k on, rest(k) is 1 - v(k). Draws are at least
-/// `at_horizon` from there.
+/// Diagram::sample() of `count` elements with their `diagram` and `target`, the mass before the meridian; v(k) is the
+/// other uniform number of the elements from k on, rest(k) is 1 - v(k). Draws are at least `at_horizon` from there.
 template <std::size_t size, class SourceOf, class V0, class V1>
 HWY_INLINE void draw_map(const BatchLayout& layout, std::size_t count, MapBlock<size>& map, const SourceOf& source_of,
                          const V0& v, const V1& rest, float at_horizon) {
   const D d;
-  find_meridian_groups(layout, count, map, source_of);
   find_meridians(layout, count, map, source_of);
   for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
     V phi0, phi1, m0, m1;
@@ -114,7 +86,7 @@ HWY_INLINE void draw_map(const BatchLayout& layout, std::size_t count, MapBlock<
     hn::Store(hn::MulAdd(a, width, phi0), d, map.phi + k);
     hn::Store(hn::Mul(v(k), mass), d, map.target + k);
   }
-  find_parallel_groups(layout, count, map, source_of);
+  find_groups(layout, count, map, source_of);
   find_parallels(layout, count, map, source_of);
   for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
     Cell c;
@@ -130,7 +102,7 @@ HWY_INLINE void draw_map(const BatchLayout& layout, std::size_t count, MapBlock<
 /// Where the elements of a block fall on the disk.
 struct DiskBlock {
   using Floats = float[block_size];
-  HWY_ALIGN int block[block_size];  // of the diagram before the incident angle: its place in layout.values()
+  HWY_ALIGN int diagram[block_size];  // that before the incident angle
   HWY_ALIGN Floats target, v,
       rest;  // the uniform numbers of the diagram, the first one times its mass, and 1 less the second
   HWY_ALIGN Floats r, gap, phi, pdf;
@@ -141,15 +113,15 @@ template <bool blended>
 HWY_INLINE void draw_single(const BatchLayout& layout, std::size_t count, const float* alpha, DiskBlock& disk) {
   const D d;
   MapBlock<block_size> map;
-  std::copy_n(disk.block, count, map.block), std::copy_n(disk.target, count, map.target);
+  std::copy_n(disk.diagram, count, map.diagram), std::copy_n(disk.target, count, map.target);
+  const auto all = layout.diagrams();
   draw_map(
       layout, count, map,
-      [&](std::size_t k) GONIO_INLINED {
-        const float* block = layout.values() + map.block[k];
+      [&map, alpha, all](std::size_t k) GONIO_INLINED {
         if constexpr (blended)
-          return TwoSources{block, layout.stride, 1 - alpha[k], alpha[k]};
+          return TwoSources(all, map.diagram[k], alpha[k]);
         else
-          return OneSource{block};
+          return OneSource(all, map.diagram[k]);
       },
       [&](std::size_t k) GONIO_INLINED { return hn::Load(d, disk.v + k); },
       [&](std::size_t k) GONIO_INLINED { return hn::Load(d, disk.rest + k); }, rim);
@@ -158,8 +130,8 @@ HWY_INLINE void draw_single(const BatchLayout& layout, std::size_t count, const 
 }
 
 /// The pdf of a displaced draw from its place. Hardly ever called, and not to be inlined: a draw needs its registers.
-static HWY_NOINLINE HWY_MAYBE_UNUSED V displaced_pdf(const BatchLayout& layout, VI block, V alpha, V r, V gap, V phi) {
-  return DisplacementLanes(layout, block, alpha).pdf(r, gap, phi);
+static HWY_NOINLINE HWY_MAYBE_UNUSED V displaced_pdf(const BatchLayout& layout, VI k, V alpha, V r, V gap, V phi) {
+  return DisplacementLanes(layout, k, alpha).pdf(r, gap, phi);
 }
 
 /// Displacement::sample(). Both diagrams of all elements are drawn as one block, those before the incident angles
@@ -172,14 +144,15 @@ HWY_INLINE void draw_displacement(const BatchLayout& layout, std::size_t count, 
   for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
     const V target = hn::Load(d, disk.target + k);
     hn::Store(target, d, map.target + k), hn::Store(target, d, map.target + count + k);
-    const VI block = hn::Load(di, disk.block + k);
-    hn::Store(block, di, map.block + k), hn::Store(hn::Add(block, set_int(layout.stride)), di, map.block + count + k);
+    const VI diagram = hn::Load(di, disk.diagram + k);
+    hn::Store(diagram, di, map.diagram + k), hn::Store(hn::Add(diagram, set_int(1)), di, map.diagram + count + k);
     hn::Store(hn::Max(hn::Load(d, disk.v + k), least), d, disk.v + k);
   }
   const auto shared = [&](const float* x, std::size_t k)
                           GONIO_INLINED { return hn::Load(d, x + (k < count ? k : k - count)); };
   draw_map(
-      layout, 2 * count, map, [&](std::size_t k) GONIO_INLINED { return OneSource{layout.values() + map.block[k]}; },
+      layout, 2 * count, map,
+      [&map, all = layout.diagrams()](std::size_t k) GONIO_INLINED { return OneSource(all, map.diagram[k]); },
       [&](std::size_t k) GONIO_INLINED { return shared(disk.v, k); },
       [&](std::size_t k) GONIO_INLINED { return shared(disk.rest, k); }, 0);
   for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
@@ -195,7 +168,7 @@ HWY_INLINE void draw_displacement(const BatchLayout& layout, std::size_t count, 
     const M beyond = hn::Or(hn::Lt(hn::Load(d, disk.rest + k), set(tail)), hn::Lt(gap, set(rim)));
     if (HWY_UNLIKELY(!hn::AllFalse(d, beyond))) {
       r = hn::Min(r, set(1 - rim)), gap = hn::Max(gap, set(rim));
-      pdf = hn::IfThenElse(beyond, displaced_pdf(layout, hn::Load(di, disk.block + k), w1, r, gap, phi), pdf);
+      pdf = hn::IfThenElse(beyond, displaced_pdf(layout, hn::Load(di, disk.diagram + k), w1, r, gap, phi), pdf);
     }
     hn::Store(r, d, disk.r + k), hn::Store(gap, d, disk.gap + k), hn::Store(phi, d, disk.phi + k),
         hn::Store(pdf, d, disk.pdf + k);
@@ -210,7 +183,8 @@ HWY_INLINE void draw_stack(const BatchLayout& layout, std::size_t count, const B
   DiskBlock disk;
   HWY_ALIGN float sign[block_size];  // of phi
   for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
-    hn::Store(block_of(layout, {hn::Load(di, brackets.k + k), hn::Load(d, brackets.alpha + k)}), di, disk.block + k);
+    hn::Store(diagram_at(layout, {hn::Load(di, brackets.k + k), hn::Load(d, brackets.alpha + k)}), di,
+              disk.diagram + k);
     const Folded uv = square_to_diagram(hn::LoadU(d, u + k), hn::LoadU(d, v + k), layout.half_azimuth);
     hn::Store(hn::Mul(uv.u, set(layout.whole_mass())), d, disk.target + k), hn::Store(uv.v, d, disk.v + k),
         hn::Store(uv.rest, d, disk.rest + k);

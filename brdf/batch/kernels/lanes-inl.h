@@ -72,6 +72,19 @@ struct Lanes {
   HWY_INLINE Vector vector() const { return hn::Load(Tag(), x); }
 };
 #if !(GONIO_LANE_CAP == 2)
+/// The values at index, and in the upper half of each lane those at index + 1.
+HWY_INLINE VI two_shorts(const std::uint16_t* base, VI index) {
+#if !defined(GONIO_LANE_CAP) && (HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX2)
+  return hn::GatherOffset(DI(), reinterpret_cast<const int*>(base), hn::Add(index, index));
+#else
+  Lanes<VI> lanes(index);
+  for (std::size_t k = 0; k < hn::Lanes(D()); ++k) {
+    const std::uint16_t* pair = base + lanes.x[k];
+    lanes.x[k] = static_cast<int>(pair[0] | static_cast<std::uint32_t>(pair[1]) << 16);
+  }
+  return lanes.vector();
+#endif
+}
 /// The values at index and index + 1. Where gathers are instructions, one of 64 bits is half as dear as two of 32.
 struct Two {
   V first, second;

@@ -18,102 +18,144 @@ struct Uniform {
   V u, v, pdf;
 };
 
-/// The last of the `lines` values from base[start] on, which ascend, that is below t, the ends apart: its index from
-/// base, in every lane.
-HWY_INLINE VI find(const float* base, VI start, int lines, V t) {
+/// The last of the `count` values from base[start] on, which ascend, that is below t, the ends apart: its number, in
+/// every lane.
+HWY_INLINE VI find(const float* base, VI start, int count, V t) {
   const Lanes<V> targets(t);
   Lanes<VI> index(start);
   for (std::size_t lane = 0; lane < hn::Lanes(D()); ++lane)
-    index.x[lane] +=
-        static_cast<int>(count_below<true, LongPass>(Row{base + index.x[lane]}, 1, lines - 2, targets.x[lane]));
+    index.x[lane] = static_cast<int>(count_below<LongPass>(Row{base + index.x[lane]}, 1, count - 2, targets.x[lane]));
   return index.vector();
 }
 
-/// The values of one diagram, at indices of its block.
-struct One {
-  const float* values;
+/// The values of the codes at index and index + 1, in units of half floats.
+HWY_INLINE Two two_codes(const std::uint16_t* base, VI index) {
+#if !defined(GONIO_LANE_CAP) && (HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX2)
+  const VI both = two_shorts(base, index);
+  const hn::Rebind<std::uint16_t, D> narrow;
+  const hn::Rebind<hwy::float16_t, D> half;
+  const auto value = [&](VI code)
+                         GONIO_INLINED { return hn::PromoteTo(D(), hn::BitCast(half, hn::DemoteTo(narrow, code))); };
+  return {value(hn::And(both, set_int(0xffff))), value(hn::ShiftRight<16>(both))};
+#else
+  Lanes<V> first(zero()), second(zero());
+  const Lanes<VI> lanes(index);
+  for (std::size_t k = 0; k < hn::Lanes(D()); ++k) {
+    first.x[k] = decode16(base[lanes.x[k]]) / half_unit, second.x[k] = decode16(base[lanes.x[k] + 1]) / half_unit;
+  }
+  return {first.vector(), second.vector()};
+#endif
+}
 
-  HWY_INLINE V value(VI index) const { return at(values, index); }
-  HWY_INLINE Two two(VI index) const { return two_at(values, index); }
+/// Numbers of one diagram in every lane, the k-th.
+struct One {
+  using OfLane = OneSource;
+  const BatchLayout& layout;
+  VI k, at_floats, at_codes;
+
+  HWY_INLINE One(const BatchLayout& all, VI diagram)
+      : layout(all),
+        k(diagram),
+        at_floats(hn::Mul(k, set_int(all.stride))),
+        at_codes(hn::Mul(k, set_int(all.code_stride))) {}
+
+  HWY_INLINE V value(VI index) const { return at(layout.floats(0), hn::Add(at_floats, index)); }
+  HWY_INLINE Two two(VI index) const { return two_at(layout.floats(0), hn::Add(at_floats, index)); }
+  HWY_INLINE Two densities(VI index) const {
+    const Two codes = two_codes(layout.codes(0), hn::Add(at_codes, index));
+    const V scale = at(layout.floats(0), at_floats);
+    return {hn::Mul(scale, codes.first), hn::Mul(scale, codes.second)};
+  }
+  HWY_INLINE OneSource lane(int diagram, std::size_t) const { return OneSource(layout.diagrams(), diagram); }
 };
-/// Those of a blend with the diagram `stride` behind it.
+/// Those of a blend with the next one.
 struct Blended {
-  const float* values;
-  int stride;
+  One one;
   V alpha;
 
-  HWY_INLINE V value(VI index) const { return mix(alpha, at(values, index), at(values + stride, index)); }
-  HWY_INLINE Two two(VI index) const {
-    const Two x = two_at(values, index), y = two_at(values + stride, index);
+  HWY_INLINE Blended(const BatchLayout& layout, VI diagram, V of_next) : one(layout, diagram), alpha(of_next) {}
+
+  HWY_INLINE One next() const { return One(one.layout, hn::Add(one.k, set_int(1))); }
+  HWY_INLINE V value(VI index) const { return mix(alpha, one.value(index), next().value(index)); }
+  HWY_INLINE Two mixed(const Two& x, const Two& y) const {
     return {mix(alpha, x.first, y.first), mix(alpha, x.second, y.second)};
   }
-};
-
-/// A cell between meridians or parallels as BatchLayout has it: its number, its group, and its place there.
-struct CellIndex {
-  VI k, group, in_group;
-
-  explicit HWY_INLINE CellIndex(VI cell) : k(cell) {
-    const V middle = hn::Add(hn::ConvertTo(D(), cell), set(0.5f));
-    group = truncated(hn::Mul(middle, set(1.0f / BatchLayout::group)));
-    in_group = hn::Sub(cell, hn::Mul(group, set_int(BatchLayout::group)));
+  HWY_INLINE Two two(VI index) const { return mixed(one.two(index), next().two(index)); }
+  HWY_INLINE Two densities(VI index) const { return mixed(one.densities(index), next().densities(index)); }
+  HWY_INLINE TwoSources lane(int diagram, std::size_t lane) const {
+    return TwoSources(one.layout.diagrams(), diagram, Lanes<V>(alpha).x[lane]);
   }
 };
+HWY_INLINE VI diagram_of(const One& source) { return source.k; }
+HWY_INLINE VI diagram_of(const Blended& source) { return source.one.k; }
 
 /// The inverse maps of Diagram or Blend; every lane has a diagram of its own.
 template <class Source>
 struct DiagramLanes {
   const BatchLayout& layout;
   Source source;
-  VI block;  // of the diagram, or of the first of two
 
-  HWY_INLINE VI index(int part, VI k) const { return hn::Add(hn::Add(block, set_int(part)), k); }
-  HWY_INLINE CellIndex find_phi(V angle) const {
-    return CellIndex(hn::Sub(find(source.values, block, layout.meridians, angle), block));
-  }
-  HWY_INLINE CellIndex find_r(V radius) const {
-    return CellIndex(hn::Sub(find(source.values + layout.r, block, layout.parallels, radius), block));
-  }
+  HWY_INLINE VI lines() const { return hn::Mul(diagram_of(source), set_int(layout.lines_stride)); }
+  HWY_INLINE VI find_phi(V angle) const { return find(layout.lines(0), lines(), layout.meridians, angle); }
+  HWY_INLINE VI find_r(V radius) const { return find(layout.lines(0) + layout.r, lines(), layout.parallels, radius); }
 
   /// A cell between two meridians: where they are, the mass along each, and the mass before the first.
   struct Sector {
     VI i;
     V phi0, phi1, m0, m1, before;
   };
-  HWY_INLINE Sector sector(const CellIndex& i) const {
-    const VI group = index(layout.meridian_groups, hn::Mul(i.group, set_int(BatchLayout::meridian_group)));
-    const VI before = hn::Add(group, i.in_group),
-             first = hn::Add(hn::Add(before, i.in_group), set_int(BatchLayout::group + 1));
-    const Two line0 = source.two(first), line1 = source.two(hn::Add(first, set_int(2)));
-    return {i.k, line0.first, line1.first, line0.second, line1.second, source.value(before)};
+  HWY_INLINE Sector sector(VI i) const {
+    const Two phi = two_at(layout.lines(0), hn::Add(lines(), i));
+    const Two along = source.two(hn::Add(i, set_int(layout.along)));
+    return {i, phi.first, phi.second, along.first, along.second, source.value(hn::Add(i, set_int(layout.before)))};
   }
 
-  /// A cell between two parallels on the meridian at `a` in a sector, and the mass along it before the cell.
+  /// A cell between two parallels on the meridian at `a` in a sector: its group, its place there, and where it ends.
   struct Ring {
+    VI group, in_group;
     Cell cell;
-    V before, end;  // of the mass, and the radius
+    V end;
   };
-  HWY_INLINE VI before_in_ring(VI i, const CellIndex& j) const {
-    const VI g = hn::Add(hn::Mul(i, set_int(layout.along)), j.group);
-    return hn::Add(index(layout.parallel_groups, hn::Mul(g, set_int(BatchLayout::parallel_group))), j.in_group);
-  }
-  HWY_INLINE Ring ring(VI i, V a, const CellIndex& j) const {
-    const VI before0 = before_in_ring(i, j);
-    const VI before1 = hn::Add(before0, set_int(layout.along * BatchLayout::parallel_group)),
-             density = set_int(BatchLayout::group);
-    const Two d0 = source.two(hn::Add(before0, density)), d1 = source.two(hn::Add(before1, density));
-    const Two r = two_at(source.values + layout.r, hn::Add(block, j.k));
-    return {{r.first, hn::Sub(r.second, r.first), mix(a, d0.first, d1.first), mix(a, d0.second, d1.second)},
-            mix(a, source.value(before0), source.value(before1)),
+  HWY_INLINE Ring ring(VI i, V a, VI j) const {
+    const V middle = hn::Add(hn::ConvertTo(D(), j), set(0.5f));
+    const VI g = truncated(hn::Mul(middle, set(1.0f / BatchLayout::group)));
+    const VI in_group = hn::Sub(j, hn::Mul(g, set_int(BatchLayout::group)));
+    const VI codes = set_int(BatchLayout::group_codes);
+    const VI first = hn::Add(hn::Mul(hn::Add(hn::Mul(g, set_int(layout.meridians)), i), codes), in_group);
+    const Two d0 = source.densities(first), d1 = source.densities(hn::Add(first, codes));
+    const Two r = two_at(layout.lines(0) + layout.r, hn::Add(lines(), j));
+    return {g,
+            in_group,
+            {r.first, hn::Sub(r.second, r.first), mix(a, d0.first, d1.first), mix(a, d0.second, d1.second)},
             r.second};
   }
 
-  /// The mass along the meridian at `a` in a sector from a cell between two parallels on. Differences first: they are
-  /// exact.
-  HWY_INLINE V mass_from(const Sector& s, V a, const CellIndex& j) const {
-    const VI first = before_in_ring(s.i, j),
-             second = hn::Add(first, set_int(layout.along * BatchLayout::parallel_group));
-    return mix(a, hn::Sub(s.m0, source.value(first)), hn::Sub(s.m1, source.value(second)));
+  /// The mass along the meridian at `a` in a sector, before a ring and behind it. The latter by differences of the mass
+  /// of each meridian: next to its end they are exact.
+  struct Masses {
+    V before, behind;
+  };
+  HWY_INLINE Masses masses_around(const Sector& s, V a, const Ring& at) const {
+    const Lanes<VI> k(diagram_of(source)), i(s.i), group_of(at.group), in_group(at.in_group);
+    const Lanes<V> a_of(a);
+    Lanes<V> before(zero()), behind(zero());
+    for (std::size_t lane = 0; lane < hn::Lanes(D()); ++lane) {
+      const auto from = source.lane(k.x[lane], lane);
+      const float a1 = a_of.x[lane], a0 = 1 - a1;
+      const int g = group_of.x[lane], j = in_group.x[lane];
+      const Eight density = from.group(group_index(layout, g, i.x[lane]), a0, a1).densities();
+      const Eight mass = masses(density, from.lines + layout.r + g * BatchLayout::group);
+      const std::ptrdiff_t length = layout.groups - 1, first = layout.starts + i.x[lane] * length;
+      if (g > 0) before.x[lane] = from.row(first, length, a0, a1).at(g - 1);
+      before.x[lane] += mass.sum(0, j);
+      const auto start = from.row(first + g);
+      if (g < length && start.at(0) < BatchLayout::beyond / 2) {  // there is a next group
+        const auto whole = from.row(layout.along);
+        behind.x[lane] = a0 * (whole.at(i.x[lane]) - start.at(0)) + a1 * (whole.at(i.x[lane] + 1) - start.at(length));
+      }
+      behind.x[lane] += mass.sum(j + 1, BatchLayout::group);
+    }
+    return {before.vector(), behind.vector()};
   }
 
   struct Meridian {
@@ -133,25 +175,26 @@ struct DiagramLanes {
   HWY_INLINE Uniform invert(V radius, V gap, V angle) const {
     const Meridian m = meridian_through(angle);
     const Ring at = ring(m.sector.i, m.a, find_r(radius));
+    const V before = masses_around(m.sector, m.a, at).before;
     const V inside =
         hn::Mul(hn::Mul(m.a, hn::Sub(m.sector.phi1, m.sector.phi0)), hn::Mul(set(0.5f), hn::Add(m.sector.m0, m.mass)));
     const V u = hn::Div(hn::Add(m.sector.before, inside), set(layout.whole_mass()));
-    const V s = at.cell.place(radius), v = quotient(hn::Add(at.before, at.cell.mass(s)), m.mass);
+    const V s = at.cell.place(radius), v = quotient(hn::Add(before, at.cell.mass(s)), m.mass);
     return {hn::Min(u, set(1)), hn::Min(v, set(1)), at.cell.density_at(radius, gap, at.end)};
   }
 };
 using OneDiagram = DiagramLanes<One>;
 
-/// Displacement between the diagrams of a block and of the block behind it. d0 is the one with the lesser weight.
+/// Displacement between a diagram and the next one. d0 is the one with the lesser weight.
 struct DisplacementLanes {
   OneDiagram d0, d1;
   V w0, w1;
 
-  HWY_INLINE DisplacementLanes(const BatchLayout& layout, VI block, V alpha)
-      : DisplacementLanes(layout, block, hn::Add(block, set_int(layout.stride)), alpha) {}
-  HWY_INLINE DisplacementLanes(const BatchLayout& layout, VI block, VI next, V alpha)
-      : d0{layout, {layout.values()}, hn::IfThenElse(hn::RebindMask(DI(), hn::Lt(alpha, set(0.5f))), next, block)},
-        d1{layout, {layout.values()}, hn::Sub(hn::Add(block, next), d0.block)},
+  HWY_INLINE DisplacementLanes(const BatchLayout& layout, VI k, V alpha)
+      : DisplacementLanes(layout, k, hn::Add(k, set_int(1)), alpha) {}
+  HWY_INLINE DisplacementLanes(const BatchLayout& layout, VI k, VI next, V alpha)
+      : d0{layout, One(layout, hn::IfThenElse(hn::RebindMask(DI(), hn::Lt(alpha, set(0.5f))), next, k))},
+        d1{layout, One(layout, hn::Sub(hn::Add(k, next), d0.source.k))},
         w0(hn::Min(alpha, hn::Sub(set(1), alpha))),
         w1(hn::Sub(set(1), w0)) {}
 
@@ -202,13 +245,10 @@ struct DisplacementLanes {
       const V one = set(1);
       if (!hn::AllTrue(D(), hn::And(hn::Ge(way, first), hn::Le(way, last)))) {
         const V r = hn::IfThenElse(outer, hn::Sub(one, way), way);
-        const CellIndex j = d.find_r(clamp01(r));
-        const OneDiagram::Ring ring = d.ring(sector.i, a, j);
+        const OneDiagram::Ring ring = d.ring(sector.i, a, d.find_r(clamp01(r)));
+        const OneDiagram::Masses around = d.masses_around(sector, a, ring);
         const V r0 = ring.cell.r0, r1 = ring.end;
-        const M inner = hn::Lt(r1, one);  // the last cell has nothing behind it
-        const CellIndex next(hn::Add(j.k, hn::IfThenElseZero(hn::RebindMask(DI(), inner), set_int(1))));
-        const V beyond = hn::IfThenElseZero(inner, hn::Max(d.mass_from(sector, a, next), zero()));
-        below = hn::Mul(hn::IfThenElse(outer, beyond, ring.before), scale);
+        below = hn::Mul(hn::IfThenElse(outer, around.behind, around.before), scale);
         first = hn::IfThenElse(outer, hn::Sub(one, r1), r0), last = hn::IfThenElse(outer, hn::Sub(one, r0), r1);
         cell = ring.cell.from_end(outer, r1);
       }

@@ -31,8 +31,9 @@ struct Bracket {
 };
 HWY_INLINE Bracket bracket_of(const BatchAngles& angles, const IncidentAngle& i) {
   if (angles.count == 1) return {hn::Zero(DI()), zero()};
-  const V part = hn::Mul(i.r, set(BatchAngles::guide_parts));
-  VI k = at(angles.guide.data(), hn::Min(truncated(part), set_int(BatchAngles::guide_parts - 1)));
+  const V part = hn::Mul(i.r, set(static_cast<float>(angles.guide_parts)));
+  VI k = hn::And(two_shorts(angles.guide.data(), hn::Min(truncated(part), set_int(angles.guide_parts - 1))),
+                 set_int(0xffff));
   for (int step = 0; step < angles.guide_steps; ++step) {
     const M before = hn::Lt(at(angles.radii.data() + 1, k), i.r);
     const VI next = hn::IfThenElse(hn::RebindMask(DI(), before), hn::Add(k, set_int(1)), k);
@@ -56,23 +57,22 @@ struct Brackets {
   }
 };
 
-/// The block of the diagram before an incident angle, or, for `nearest`, of the closer one.
-HWY_INLINE VI block_of(const BatchLayout& layout, const Bracket& bracket) {
-  const VI block = hn::Mul(bracket.k, set_int(layout.stride));
-  if (layout.interpolation != Interpolation::nearest) return block;
+/// The diagram before an incident angle, or, for `nearest`, the closer one.
+HWY_INLINE VI diagram_at(const BatchLayout& layout, const Bracket& bracket) {
+  if (layout.interpolation != Interpolation::nearest) return bracket.k;
   const auto first_is_closer = hn::RebindMask(DI(), hn::Lt(bracket.alpha, set(0.5f)));
-  return hn::IfThenElse(first_is_closer, block, hn::Add(block, set_int(layout.stride)));
+  return hn::IfThenElse(first_is_closer, bracket.k, hn::Add(bracket.k, set_int(layout.angles.count > 1 ? 1 : 0)));
 }
 
 /// Calls maps(lanes) with what serves a place: one diagram, a blend or a displacement.
 template <class Call>
 HWY_INLINE auto with_lanes(const BatchLayout& layout, const Bracket& bracket, const Call& call) {
-  const VI block = block_of(layout, bracket);
+  const VI k = diagram_at(layout, bracket);
   if (layout.angles.count == 1 || layout.interpolation == Interpolation::nearest)
-    return call(OneDiagram{layout, {layout.values()}, block});
+    return call(OneDiagram{layout, One(layout, k)});
   if (layout.interpolation == Interpolation::blend)
-    return call(DiagramLanes<Blended>{layout, {layout.values(), layout.stride, bracket.alpha}, block});
-  return call(DisplacementLanes(layout, block, bracket.alpha));
+    return call(DiagramLanes<Blended>{layout, Blended(layout, k, bracket.alpha)});
+  return call(DisplacementLanes(layout, k, bracket.alpha));
 }
 
 HWY_INLINE OnDisk to_disk(const BatchLayout& layout, V theta_i, const Direction& wo) {

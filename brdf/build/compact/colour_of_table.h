@@ -12,7 +12,7 @@ namespace gonio {
 /// The map that a colour belongs to: (theta_i [rad], u, v) to a direction and its pdf.
 using DirectionMap = std::function<DirectionSample<float>(float theta_i, float u, float v)>;
 
-/// That of a Stack or PackedStack, which must outlive it.
+/// That of a Stack, which must outlive it.
 template <class S>
 DirectionMap direction_map(const S& stack) {
   return [&stack](float theta_i, float u, float v) { return stack.sample(theta_i, u, v); };

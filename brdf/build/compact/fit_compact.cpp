@@ -5,12 +5,13 @@
 #include <string>
 #include <utility>
 
+#include <gonio/brdf/batch/batch_layout.h>
 #include <gonio/brdf/build/compact/fit_colour.h>
 #include <gonio/brdf/build/compact/fit_compact.h>
 #include <gonio/brdf/build/stack/grow_stack.h>
 #include <gonio/mapping/base/error.h>
 #include <gonio/mapping/base/parallel.h>
-#include <gonio/mapping/stack/packed_stack.h>
+#include <gonio/mapping/stack/rounded16.h>
 
 namespace gonio {
 namespace {
@@ -27,8 +28,10 @@ constexpr double prepared_share = 0.1, attempt_share = 0.3, growth_share = 0.7;
 
 class Fitter {
  public:
-  Fitter(const BrdfTable& table, const BsdfOptions& options, const Progress& progress)
-      : table_(table), options_(options), charts_(candidates(options)), progress_(progress) {
+  enum class Colours { none, fitted };
+
+  Fitter(const BrdfTable& table, const BsdfOptions& options, Colours colours, const Progress& progress)
+      : table_(table), options_(options), colours_(colours), charts_(candidates(options)), progress_(progress) {
     if (options.max_variance && !(*options.max_variance > 0))
       throw Error("compact fit: max_variance: found " + std::to_string(*options.max_variance) +
                   ", expected more than 0");
@@ -52,23 +55,24 @@ class Fitter {
     // A variance that is to hold at every angle holds at those that are rarely seen, too.
     if (!options_.max_variance)
       limits.weight = [this](double theta_i) { return incidence_weight(options_.incidence, theta_i); };
-    if (cut) limits.bytes = limits.bytes * 9 / 10;  // the colour's share
+    if (cut && colours_ == Colours::fitted) limits.bytes = limits.bytes * 9 / 10;  // the colour's share
     detail::Grown grown = grow_stack(recipe, Interpolation::blend, limits,
                                      [&](double share) { report(from + growth_share * share * way); });
     report(from + growth_share * way);
     out_of_bytes_ = grown.out_of_bytes;
     if (grown.out_of_bytes && !cut) return std::nullopt;
-    const PackedStack stack(grown.grid);
+    BsdfData data{rounded16(grown.grid), Interpolation::blend, {}};
+    const Stack<float> stack(data.diagrams, data.interpolation);
+    const std::size_t stack_bytes = BatchLayout(stack).bytes();
     const DirectionMap map = direction_map(stack);
     const CompactDraws draws(table_, map, options_.incidence);
-    CompactFit fit{{stack.grid(), Interpolation::blend, Storage::packed16, {}},
-                   stack.bytes(),
-                   tolerance,
+    CompactFit fit{std::move(data), stack_bytes, tolerance,
                    draws.quality([](float, const CompactDraw& d) { return d.weight; })};
     // A stack that will not be chosen needs no colour.
-    if (cut || fit.quality.worst_relvar <= options_.max_variance.value_or(fit.quality.worst_relvar)) {
+    const bool wanted = cut || fit.quality.worst_relvar <= options_.max_variance.value_or(fit.quality.worst_relvar);
+    if (wanted && colours_ == Colours::fitted) {
       // Not `bytes`: a colour made to fit under another stack's would be a worse one.
-      const std::size_t left = options_.budget > stack.bytes() + 200 ? options_.budget - stack.bytes() - 200 : 0;
+      const std::size_t left = options_.budget > stack_bytes + 200 ? options_.budget - stack_bytes - 200 : 0;
       const int finest_side = colour_error > 0 ? 16 : 32;
       detail::ColourFit fitted =
           detail::fit_colour(table_, map, stack.theta_i(), draws, finest_side, left, colour_error);
@@ -191,13 +195,12 @@ class Fitter {
 
   /// What lines take in memory.
   struct Size {
-    std::size_t diagram, lines;  // a diagram of a PackedStack; what there is once
+    std::size_t diagram, lines;  // a diagram; what there is once
 
     explicit Size(const SharedLines& shared) {
       const std::size_t m = shared.across.size(), n = shared.along.size();
-      // Codes, mass up to each meridian, mass up to each block of eight cells.
-      diagram = m * n * 2 + m * 4 + m * ((n + 6) / 8) * 4 + 8;
-      lines = (m + n) * 4 + sizeof(PackedStack) + sizeof(Colour) + 200;
+      diagram = BatchLayout::diagram_bytes(m, n);
+      lines = BatchLayout::lines_bytes(m, n) + sizeof(Colour) + 200;
     }
     std::size_t least() const { return lines + 3 * diagram; }
   };
@@ -268,7 +271,7 @@ class Fitter {
   CompactChoice coloured(std::size_t best) {
     CompactChoice choice{{}, 0};
     for (std::size_t k = 0; k < tried.size(); ++k) {
-      if (tried[k].data.colour.empty()) continue;
+      if (colours_ == Colours::fitted && tried[k].data.colour.empty()) continue;
       if (k == best) choice.chosen = choice.tried.size();
       choice.tried.push_back(std::move(tried[k]));
     }
@@ -300,6 +303,7 @@ class Fitter {
 
   const BrdfTable& table_;
   const BsdfOptions& options_;
+  const Colours colours_;
   const std::vector<Chart> charts_;
   const Progress& progress_;
   std::map<Chart, LineFit> prepared_;
@@ -315,10 +319,23 @@ class Fitter {
 }  // namespace
 
 CompactChoice fit_compact(const BrdfTable& table, const BsdfOptions& options, const Progress& progress) {
-  Fitter fitter(table, options, progress);
+  Fitter fitter(table, options, Fitter::Colours::fitted, progress);
   CompactChoice choice = options.max_variance ? fitter.least_bytes() : fitter.least_error();
   if (progress) progress(1);
   return choice;
+}
+
+BsdfData fit_diagrams(const BrdfTable& table, const BsdfOptions& options, const Progress& progress) {
+  // The error of f_r without a table is that of the colours, too.
+  if (!options.max_variance) {
+    BsdfData data = fit_compact(table, options, progress).best().data;
+    data.colour = {};
+    return data;
+  }
+  Fitter fitter(table, options, Fitter::Colours::none, progress);
+  BsdfData data = fitter.least_bytes().best().data;
+  if (progress) progress(1);
+  return data;
 }
 
 std::vector<CompactFit> compact_curve(const BrdfTable& table, const std::vector<double>& max_variances,
@@ -328,7 +345,7 @@ std::vector<CompactFit> compact_curve(const BrdfTable& table, const std::vector<
       throw Error("compact fit: max_variances: found " + std::to_string(max_variance) + ", expected more than 0");
   BsdfOptions without_goal = options;  // every stack of the curve is wanted
   without_goal.max_variance.reset();
-  Fitter fitter(table, without_goal, progress);
+  Fitter fitter(table, without_goal, Fitter::Colours::fitted, progress);
   const std::vector<Chart> tried_charts = candidates(options);
   std::size_t left = max_variances.size() * tried_charts.size();
   for (const double max_variance : max_variances) {

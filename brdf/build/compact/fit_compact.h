@@ -11,8 +11,8 @@ namespace gonio {
 
 /// A BSDF with colours of its own, fitted to a table.
 struct CompactFit {
-  BsdfData data;      ///< blend, packed16
-  std::size_t bytes;  ///< in that storage: of PackedStack and Colour
+  BsdfData data;      ///< a blend
+  std::size_t bytes;  ///< as a Bsdf holds it
   double tolerance;   ///< that the stack was built to
   CompactQuality quality;
 };
@@ -31,10 +31,15 @@ struct CompactChoice {
 /// Deterministic; uses all cores.
 /// With a variance asked for, the least bytes that have it at every angle up to 80 degrees, with a colour whose
 /// evaluation error is at most a fifth of its root, or hardly larger than that of the finest colour; otherwise the
-/// least evaluation error within the budget. Interpolation and storage of the options do not count.
+/// least evaluation error within the budget. The interpolation of the options does not count.
 /// @throws Error for a variance that is not > 0, sizes out of range, or a budget of less than 1 KiB or into which
 /// nothing fits.
 CompactChoice fit_compact(const BrdfTable& table, const BsdfOptions& options = {}, const Progress& progress = {});
+
+/// The diagrams of a BSDF that takes f_r from the table: chosen in the same way, without a colour to fit and to keep
+/// room for.
+/// @throws Error as fit_compact().
+BsdfData fit_diagrams(const BrdfTable& table, const BsdfOptions& options = {}, const Progress& progress = {});
 
 /// The error over the bytes: a fit for each variance asked for (descending), in the better chart of each, those
 /// left out that are neither smaller nor better than another. Ascending bytes.

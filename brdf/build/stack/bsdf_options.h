@@ -22,11 +22,10 @@ struct BsdfOptions {
   BsdfValue f_r = BsdfValue::table;
   std::optional<Chart> chart;  ///< none: of a blend the one that takes fewer bytes, otherwise outgoing
   Interpolation interpolation = Interpolation::blend;
-  Storage storage = Storage::packed16;  ///< packed16: blend alone
   /// The relative variance of sampling that is good enough, at and between all incident angles up to 80 degrees. None:
   /// the least error of f_r within the budget.
   std::optional<double> max_variance = 0.003;
-  std::size_t budget = 256 * 1024;  ///< bytes at most, in `storage`
+  std::size_t budget = 256 * 1024;  ///< bytes at most, as Bsdf holds them
   Incidence incidence;              ///< where the error counts; `max_variance` holds at every angle all the same
   int incident = 192;               ///< incident angles at most, >= 2
   int meridians = 64;               ///< in a diagram at most, >= 2

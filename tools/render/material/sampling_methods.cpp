@@ -75,17 +75,16 @@ std::shared_ptr<const Scatter> MethodBuilder::build(SamplingMethod method, const
     case SamplingMethod::lobes3:
       return make_scatter(LobeSampler(table_, lobes(3)));
     case SamplingMethod::nearest:
-      return make_scatter(Bsdf({outgoing(progress), Interpolation::nearest, Storage::float32, {}}, table_));
+      return make_scatter(Bsdf({outgoing(progress), Interpolation::nearest, {}}, table_));
     case SamplingMethod::mixture:
-      return make_scatter(StackBsdf({outgoing(progress), Interpolation::mixture, Storage::float32, {}}, table_));
+      return make_scatter(StackBsdf({outgoing(progress), Interpolation::mixture, {}}, table_));
     case SamplingMethod::displacement:
-      return make_scatter(Bsdf({outgoing(progress), Interpolation::displacement, Storage::float32, {}}, table_));
+      return make_scatter(Bsdf({outgoing(progress), Interpolation::displacement, {}}, table_));
     case SamplingMethod::half: {
       BsdfOptions options = options_;
       options.chart = Chart::half;
       options.interpolation = Interpolation::blend;
-      return make_scatter(
-          Bsdf({build_stack(*table_, options, progress), Interpolation::blend, Storage::float32, {}}, table_));
+      return make_scatter(Bsdf({build_stack(*table_, options, progress), Interpolation::blend, {}}, table_));
     }
     case SamplingMethod::rgl:
       return make_scatter(RglSampler(table_));

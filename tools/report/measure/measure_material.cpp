@@ -39,8 +39,7 @@ nlohmann::json stack_params(const BsdfData& data) {
   nlohmann::json params = {{"incident", data.diagrams.theta_i.size()},
                            {"largest_meridians", meridians},
                            {"largest_parallels", parallels},
-                           {"mean_crossings", crossings / data.diagrams.theta_i.size()},
-                           {"storage", to_string(data.storage)}};
+                           {"mean_crossings", crossings / data.diagrams.theta_i.size()}};
   if (!data.colour.empty()) {
     params["colour_cells"] = data.colour.side() * (data.colour.side() / 2);
     params["colour_angles"] = data.colour.theta_i().size();
@@ -217,7 +216,7 @@ void add_small_stack(const std::shared_ptr<const BrdfTable>& table, std::size_t 
     options.interpolation = Interpolation::displacement;
     options.meridians = options.parallels = side;
     options.budget = bytes;
-    BsdfData data{build_stack(*table, options), options.interpolation, Storage::float32, {}};
+    BsdfData data{build_stack(*table, options), options.interpolation, {}};
     const auto larger = std::make_shared<const Bsdf>(data, table);
     if (bsdf && larger->bytes() > bytes) break;
     bsdf = larger, kept = std::move(data);
@@ -225,8 +224,8 @@ void add_small_stack(const std::shared_ptr<const BrdfTable>& table, std::size_t 
   bench.add<Bsdf>("displacement_small", "outgoing", stack_params(kept), seconds_since(start), bsdf);
 }
 
-/// What make_bsdf() does by default, and the smallest BSDF with colours of its own of ten times the variance.
-/// Everything that was measured on the way becomes a point.
+/// What make_bsdf() does by default, but that a colour is fitted, too, and the smallest BSDF with colours of its own of
+/// ten times the variance. Everything that was measured on the way becomes a point.
 void add_compact(const std::shared_ptr<const BrdfTable>& table, Bench& bench, std::vector<FrontPoint>& points,
                  const Progress& progress) {
   const auto add_points = [&](const CompactChoice& choice, bool chosen) {
@@ -303,7 +302,7 @@ MaterialReport measure_material(const std::filesystem::path& path, const ReportO
     bench.add<RglSampler>("rgl", "half", none, 0, std::make_shared<const RglSampler>(table));
   for (const Interpolation interpolation :
        {Interpolation::nearest, Interpolation::mixture, Interpolation::displacement}) {
-    const BsdfData data{grid, interpolation, Storage::float32, {}};
+    const BsdfData data{grid, interpolation, {}};
     if (interpolation == Interpolation::mixture)
       bench.add<StackBsdf>("mixture", "outgoing", stack_params(data), build.count(),
                            std::make_shared<const StackBsdf>(data, table));
