@@ -33,6 +33,7 @@ std::vector<float> planes(const std::vector<glm::vec3>& cells, std::size_t slice
 std::vector<glm::vec3> repaired_colour(const RglFile& file) {
   std::vector<glm::vec3> cells = file.colour;
   std::vector<CellKind> kinds;
+  kinds.reserve(cells.size());
   for (const glm::vec3& cell : cells) kinds.push_back(kind_of(cell));
   const std::size_t n = file.theta_i.size();
   const auto height = static_cast<std::size_t>(file.colour_height);

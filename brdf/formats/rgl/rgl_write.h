@@ -14,7 +14,7 @@ enum class RglColour {
 };
 
 /// Writes an isotropic RGL file, replacing the target as a whole or leaving it as it was. Colours, ndf
-/// and sigma are those of `file` bit by bit, but densities that are negative or not finite are repaired as
+/// and sigma are those of `stored` bit by bit, but densities that are negative or not finite are repaired as
 /// RglTable does by default. Slices of vndf and luminance are scaled to an integral of 1 where they lack it,
 /// as readers do themselves. Spectra are of the colours as RglTable repairs them by
 /// default, without negative values. phi_i is 0.
@@ -24,6 +24,6 @@ enum class RglColour {
 /// @throws Error if the path cannot be written; if spectra are wanted and no colour is finite; and if
 ///   luminance and colours are not squares of one size, or jacobian is false, since those readers refuse
 ///   the one and pbrt-v4 ignores the other.
-void write_rgl(const std::filesystem::path& path, const RglFile& file, RglColour colour = RglColour::rgb_and_spectra);
+void write_rgl(const std::filesystem::path& path, const RglFile& stored, RglColour colour = RglColour::rgb_and_spectra);
 
 }  // namespace gonio

@@ -58,6 +58,7 @@ std::vector<glm::vec3> rec709_weights(const std::vector<float>& wavelengths) {
     weights[k] += t * rgb;
   }
   std::vector<glm::vec3> result;
+  result.reserve(weights.size());
   for (const glm::dvec3& weight : weights) result.emplace_back(weight / sum);
   return result;
 }
