@@ -117,7 +117,7 @@ HWY_INLINE void draw_single(const BatchLayout& layout, std::size_t count, const 
   const auto all = layout.diagrams();
   draw_map(
       layout, count, map,
-      [&map, alpha, all](std::size_t k) GONIO_INLINED {
+      [&, all](std::size_t k) GONIO_INLINED {
         if constexpr (blended)
           return TwoSources(all, map.diagram[k], alpha[k]);
         else
