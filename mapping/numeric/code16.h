@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 
@@ -29,7 +30,7 @@ inline float decode16(std::uint16_t code) noexcept {
 inline std::uint16_t encode16(double value_over_peak) noexcept {
   const double value = value_over_peak * 0x1p15;
   if (value < 0x1p-14) {
-    const auto code = static_cast<std::uint16_t>(value * 0x1p24 + 0.5);
+    const auto code = static_cast<std::uint16_t>(std::lround(value * 0x1p24));
     return code == 0 && value_over_peak > 0 ? std::uint16_t{1} : code;
   }
   std::uint64_t bits;
