@@ -17,9 +17,18 @@ void check_size(std::size_t values) {
     throw Error("batch: found " + std::to_string(values) + " values, expected at most " + std::to_string(most));
 }
 
-int round_up(int count, int unit) { return (count + unit - 1) / unit * unit; }
-
 constexpr int at_once = 16;  // floats that searches read, at most: as many may be read behind an array
+
+/// Groups along a meridian, and what a diagram has of everything.
+struct Sizes {
+  int groups, codes, floats, lines;
+
+  Sizes(int m, int n)
+      : groups((n + BatchLayout::group - 2) / BatchLayout::group),
+        codes(groups * m * BatchLayout::group_codes),
+        floats(2 + m * (groups + 1)),
+        lines(m + groups * BatchLayout::group + 1) {}
+};
 
 }  // namespace
 
@@ -50,14 +59,14 @@ std::size_t BatchAngles::bytes() const noexcept {
   return (values.capacity() + radii.capacity()) * sizeof(float) + guide.capacity() * sizeof(std::uint16_t);
 }
 
-std::size_t BatchLayout::diagram_bytes(std::size_t meridians, std::size_t parallels) noexcept {
-  const std::size_t groups = (parallels + group - 2) / group;
-  return groups * meridians * group_codes * sizeof(std::uint16_t) + (2 + meridians * (groups + 1)) * sizeof(float);
+std::size_t BatchLayout::diagram_bytes(int meridians, int parallels) noexcept {
+  const Sizes of(meridians, parallels);
+  return static_cast<std::size_t>(of.codes) * sizeof(std::uint16_t) +
+         static_cast<std::size_t>(of.floats) * sizeof(float);
 }
 
-std::size_t BatchLayout::lines_bytes(std::size_t meridians, std::size_t parallels) noexcept {
-  const std::size_t groups = (parallels + group - 2) / group;
-  return (meridians + groups * group + 1) * sizeof(float);
+std::size_t BatchLayout::lines_bytes(int meridians, int parallels) noexcept {
+  return static_cast<std::size_t>(Sizes(meridians, parallels).lines) * sizeof(float);
 }
 
 BatchLayout::BatchLayout(const Stack<float>& stack)
@@ -76,15 +85,13 @@ BatchLayout::BatchLayout(const Stack<float>& stack)
     parallels = std::max(parallels, d.parallels());
     shared = shared && d.same_lines(diagrams.front());
   }
-  const std::size_t count = diagrams.size(), m_count = static_cast<std::size_t>(meridians);
-  groups = round_up(parallels - 1, group) / group;
+  const std::size_t count = diagrams.size();
+  const Sizes each(meridians, parallels);
+  const int lines = each.lines;
+  check_size(count * static_cast<std::size_t>(each.codes));
+  groups = each.groups, code_stride = each.codes, stride = each.floats, lines_stride = shared ? 0 : lines;
   before = 1, along = before + meridians + 1, starts = along + meridians;
   r = meridians;
-  const int lines = meridians + groups * group + 1;
-  lines_stride = shared ? 0 : lines;
-  check_size(count * m_count * static_cast<std::size_t>(groups) * group_codes);
-  code_stride = groups * meridians * group_codes;
-  stride = starts + meridians * (groups - 1);
 
   codes_.assign(count * static_cast<std::size_t>(code_stride) + group_codes, 0);
   floats_.assign(count * static_cast<std::size_t>(stride) + at_once, beyond);

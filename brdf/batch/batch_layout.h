@@ -47,8 +47,8 @@ struct BatchLayout {
   explicit BatchLayout(const Stack<float>& stack);
 
   /// What a diagram takes, and the lines that it may share with others.
-  static std::size_t diagram_bytes(std::size_t meridians, std::size_t parallels) noexcept;
-  static std::size_t lines_bytes(std::size_t meridians, std::size_t parallels) noexcept;
+  static std::size_t diagram_bytes(int meridians, int parallels) noexcept;
+  static std::size_t lines_bytes(int meridians, int parallels) noexcept;
 
   static constexpr float beyond = 1e30f;  ///< above all numbers; small enough for weights and sums
   static constexpr int group = 7;         ///< cells
@@ -72,9 +72,6 @@ struct BatchLayout {
   Diagrams diagrams() const noexcept {
     return {codes_.data(), floats_.data(), lines_.data(), code_stride, stride, lines_stride};
   }
-  const std::uint16_t* codes(std::ptrdiff_t k) const noexcept { return codes_.data() + k * code_stride; }
-  const float* floats(std::ptrdiff_t k) const noexcept { return floats_.data() + k * stride; }
-  const float* lines(std::ptrdiff_t k) const noexcept { return lines_.data() + k * lines_stride; }
   std::size_t bytes() const noexcept;                                       ///< on the heap
   float whole_mass() const noexcept { return half_azimuth ? 0.5f : 1.0f; }  ///< Diagram::mass() but for rounding
 

@@ -84,10 +84,9 @@ HWY_INLINE InDiagrams draw_maps(const BatchLayout& layout, const Source& source0
     float before;
   };
   const auto ring = [&](const Source& source, std::ptrdiff_t i, float b_of, float a_of, float before) GONIO_INLINED {
-    const auto row = starts(layout, source, i, b_of, a_of);
-    const std::ptrdiff_t g = count_below(row, 0, layout.groups - 1, before);
+    const Group group = find_group(layout, source, i, b_of, a_of, before);
     Ring found;
-    found.before = find_in_group(layout, source, g, i, b_of, a_of, g > 0 ? row.at(g - 1) : 0.0f, before, found.cell);
+    found.before = find_in_group(layout, source, group, i, b_of, a_of, before, found.cell);
     return found;
   };
   const Ring r0 = ring(source0, s0.i, hn::GetLane(b), hn::GetLane(a), hn::GetLane(next));

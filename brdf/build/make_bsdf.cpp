@@ -18,16 +18,17 @@ BsdfData stack_data(const BrdfTable& table, const BsdfOptions& options, const Pr
   return data;
 }
 
+BsdfData data_of(const BrdfTable& table, const BsdfOptions& options, const Progress& progress) {
+  if (options.interpolation != Interpolation::blend) return stack_data(table, options, progress);
+  if (options.f_r == BsdfValue::table) return fit_diagrams(table, options, progress);
+  return fit_compact(table, options, progress).best().data;
+}
+
 }  // namespace
 
 Bsdf make_bsdf(std::shared_ptr<const BrdfTable> table, const BsdfOptions& options, const Progress& progress) {
   table = required_table(std::move(table), "BSDF");
-  const auto fitted = [&] {
-    return options.f_r == BsdfValue::table ? fit_diagrams(*table, options, progress)
-                                           : fit_compact(*table, options, progress).best().data;
-  };
-  const BsdfData data =
-      options.interpolation == Interpolation::blend ? fitted() : stack_data(*table, options, progress);
+  const BsdfData data = data_of(*table, options, progress);
   return options.f_r == BsdfValue::table ? Bsdf(data, std::move(table)) : Bsdf(data);
 }
 

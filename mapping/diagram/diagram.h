@@ -73,10 +73,6 @@ class Diagram {
   /// The lines and normalised densities; building a diagram from them gives this one again, bit by bit.
   DiagramGrid grid() const;
 
-  /// All that the maps read, as one block: phi (M), mass up to each meridian (M), r (N), density (M x N),
-  /// mass along each meridian up to each parallel (M x N).
-  const std::vector<T>& values() const noexcept { return values_; }
-
   /// Whether the meridians and parallels of another diagram are the same.
   bool same_lines(const Diagram& other) const noexcept;
 

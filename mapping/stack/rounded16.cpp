@@ -9,8 +9,7 @@ namespace gonio {
 
 StackGrid rounded16(const StackGrid& grid) {
   // Checks the grid, and rounds lines and angles.
-  const StackGrid lines = Stack<float>(grid, Interpolation::nearest).grid();
-  StackGrid rounded = lines;
+  StackGrid rounded = Stack<float>(grid, Interpolation::nearest).grid();
   for (std::size_t k = 0; k < rounded.diagrams.size(); ++k) {
     DiagramGrid& d = rounded.diagrams[k];
     const std::vector<double>& given = grid.diagrams[k].density;

@@ -19,6 +19,7 @@
 #include <gonio/fitting/model/synth.h>
 
 #include "tests/support/batch_targets.h"
+#include "tests/support/files.h"
 #include "tests/support/table_files.h"
 
 namespace gonio {
@@ -236,10 +237,9 @@ TEST_P(BatchTableOn, AsPlainCode) {
 }
 
 TEST_P(BatchTableOn, AsPlainCodeOnMeasuredFiles) {
-  const char* folder = std::getenv("GONIO_TEST_DATA");
-  if (folder == nullptr) GTEST_SKIP() << "GONIO_TEST_DATA is not set";
+  const std::filesystem::path data = test::test_data();
+  if (data.empty()) GTEST_SKIP() << "GONIO_TEST_DATA is not set";
   const Pairs pairs = all_pairs(100003);
-  const std::filesystem::path data(folder);
   for (const char* file : {"paper_white", "cg_sunflower", "satin_rosaline"})
     expect_as_plain(of_rgl(file, read_rgl(data / "rgl" / (std::string(file) + "_rgb.bsdf"))), pairs);
   for (const char* file : {"carpaint_blue.mbsdf", "carpaint_red.mbsdf"})

@@ -50,14 +50,12 @@ HWY_INLINE void find_meridians(const BatchLayout& layout, std::size_t count, Map
 template <std::size_t size, class SourceOf>
 HWY_INLINE void find_groups(const BatchLayout& layout, std::size_t count, MapBlock<size>& map,
                             const SourceOf& source_of) {
-  const std::ptrdiff_t length = layout.groups - 1;
   for (std::size_t k = 0; k < count; ++k) {
     const auto source = source_of(k);
     const std::ptrdiff_t i = map.meridian[k];
-    const auto row = starts(layout, source, i, map.b[k], map.a[k]);
-    const std::ptrdiff_t g = count_below(row, 0, length, map.target[k]);
-    source.group(group_index(layout, g, i), 0, 0).prefetch();
-    map.group[k] = static_cast<int>(g), map.below[k] = g > 0 ? row.at(g - 1) : 0.0f;
+    const Group group = find_group(layout, source, i, map.b[k], map.a[k], map.target[k]);
+    source.group(group_index(layout, group.g, i), 0, 0).prefetch();
+    map.group[k] = static_cast<int>(group.g), map.below[k] = group.start;
   }
 }
 
@@ -65,8 +63,8 @@ template <std::size_t size, class SourceOf>
 HWY_INLINE void find_parallels(const BatchLayout& layout, std::size_t count, MapBlock<size>& map,
                                const SourceOf& source_of) {
   for (std::size_t k = 0; k < count; ++k) {
-    map.below[k] = find_in_group(layout, source_of(k), map.group[k], map.meridian[k], map.b[k], map.a[k], map.below[k],
-                                 map.target[k], map.cell + 4 * k);
+    map.below[k] = find_in_group(layout, source_of(k), Group{map.group[k], map.below[k]}, map.meridian[k], map.b[k],
+                                 map.a[k], map.target[k], map.cell + 4 * k);
   }
 }
 

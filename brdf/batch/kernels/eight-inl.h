@@ -23,7 +23,8 @@ struct Eight {
   HWY_INLINE void store(float* to) const {
     for (int i = 0; i < parts; ++i) hn::StoreU(x[i], Pass(), to + i * lanes);
   }
-  /// Those from k on: as many as a vector of two has, or all. (What is stored as a whole is slow to be loaded in part.)
+  /// Each is the one k further on; those without one are any. (By a permutation where that is possible: what is stored
+  /// as a whole is slow to load in part.)
   HWY_INLINE Eight from(int k) const {
     Eight y;
     if constexpr (parts == 1) {

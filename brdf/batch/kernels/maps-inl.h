@@ -59,11 +59,12 @@ struct One {
         at_floats(hn::Mul(k, set_int(all.stride))),
         at_codes(hn::Mul(k, set_int(all.code_stride))) {}
 
-  HWY_INLINE V value(VI index) const { return at(layout.floats(0), hn::Add(at_floats, index)); }
-  HWY_INLINE Two two(VI index) const { return two_at(layout.floats(0), hn::Add(at_floats, index)); }
+  HWY_INLINE VI diagram() const { return k; }
+  HWY_INLINE V value(VI index) const { return at(layout.diagrams().floats, hn::Add(at_floats, index)); }
+  HWY_INLINE Two two(VI index) const { return two_at(layout.diagrams().floats, hn::Add(at_floats, index)); }
   HWY_INLINE Two densities(VI index) const {
-    const Two codes = two_codes(layout.codes(0), hn::Add(at_codes, index));
-    const V scale = at(layout.floats(0), at_floats);
+    const Two codes = two_codes(layout.diagrams().codes, hn::Add(at_codes, index));
+    const V scale = at(layout.diagrams().floats, at_floats);
     return {hn::Mul(scale, codes.first), hn::Mul(scale, codes.second)};
   }
   HWY_INLINE OneSource lane(int diagram, std::size_t) const { return OneSource(layout.diagrams(), diagram); }
@@ -75,6 +76,7 @@ struct Blended {
 
   HWY_INLINE Blended(const BatchLayout& layout, VI diagram, V of_next) : one(layout, diagram), alpha(of_next) {}
 
+  HWY_INLINE VI diagram() const { return one.k; }
   HWY_INLINE One next() const { return One(one.layout, hn::Add(one.k, set_int(1))); }
   HWY_INLINE V value(VI index) const { return mix(alpha, one.value(index), next().value(index)); }
   HWY_INLINE Two mixed(const Two& x, const Two& y) const {
@@ -86,18 +88,17 @@ struct Blended {
     return TwoSources(one.layout.diagrams(), diagram, Lanes<V>(alpha).x[lane]);
   }
 };
-HWY_INLINE VI diagram_of(const One& source) { return source.k; }
-HWY_INLINE VI diagram_of(const Blended& source) { return source.one.k; }
-
 /// The inverse maps of Diagram or Blend; every lane has a diagram of its own.
 template <class Source>
 struct DiagramLanes {
   const BatchLayout& layout;
   Source source;
 
-  HWY_INLINE VI lines() const { return hn::Mul(diagram_of(source), set_int(layout.lines_stride)); }
-  HWY_INLINE VI find_phi(V angle) const { return find(layout.lines(0), lines(), layout.meridians, angle); }
-  HWY_INLINE VI find_r(V radius) const { return find(layout.lines(0) + layout.r, lines(), layout.parallels, radius); }
+  HWY_INLINE VI lines() const { return hn::Mul(source.diagram(), set_int(layout.lines_stride)); }
+  HWY_INLINE VI find_phi(V angle) const { return find(layout.diagrams().lines, lines(), layout.meridians, angle); }
+  HWY_INLINE VI find_r(V radius) const {
+    return find(layout.diagrams().lines + layout.r, lines(), layout.parallels, radius);
+  }
 
   /// A cell between two meridians: where they are, the mass along each, and the mass before the first.
   struct Sector {
@@ -105,7 +106,7 @@ struct DiagramLanes {
     V phi0, phi1, m0, m1, before;
   };
   HWY_INLINE Sector sector(VI i) const {
-    const Two phi = two_at(layout.lines(0), hn::Add(lines(), i));
+    const Two phi = two_at(layout.diagrams().lines, hn::Add(lines(), i));
     const Two along = source.two(hn::Add(i, set_int(layout.along)));
     return {i, phi.first, phi.second, along.first, along.second, source.value(hn::Add(i, set_int(layout.before)))};
   }
@@ -123,7 +124,7 @@ struct DiagramLanes {
     const VI codes = set_int(BatchLayout::group_codes);
     const VI first = hn::Add(hn::Mul(hn::Add(hn::Mul(g, set_int(layout.meridians)), i), codes), in_group);
     const Two d0 = source.densities(first), d1 = source.densities(hn::Add(first, codes));
-    const Two r = two_at(layout.lines(0) + layout.r, hn::Add(lines(), j));
+    const Two r = two_at(layout.diagrams().lines + layout.r, hn::Add(lines(), j));
     return {g,
             in_group,
             {r.first, hn::Sub(r.second, r.first), mix(a, d0.first, d1.first), mix(a, d0.second, d1.second)},
@@ -136,7 +137,7 @@ struct DiagramLanes {
     V before, behind;
   };
   HWY_INLINE Masses masses_around(const Sector& s, V a, const Ring& at) const {
-    const Lanes<VI> k(diagram_of(source)), i(s.i), group_of(at.group), in_group(at.in_group);
+    const Lanes<VI> k(source.diagram()), i(s.i), group_of(at.group), in_group(at.in_group);
     const Lanes<V> a_of(a);
     Lanes<V> before(zero()), behind(zero());
     for (std::size_t lane = 0; lane < hn::Lanes(D()); ++lane) {

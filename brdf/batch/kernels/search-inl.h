@@ -155,8 +155,9 @@ struct TwoSources {
   }
 };
 
-/// The cell between meridians where the mass before reaches `target`, by two steps of which a caller with many elements
-/// makes loops of their own.
+// The steps of a search. A caller with many elements makes a loop of each.
+
+/// The cell between meridians where the mass before reaches `target`.
 template <class Source>
 HWY_INLINE std::ptrdiff_t find_meridian(const BatchLayout& layout, const Source& source, float target) {
   return count_below<LongPass>(source.row(layout.before), 1, layout.meridians - 2, target);
@@ -168,11 +169,19 @@ HWY_INLINE void copy_meridians(const BatchLayout& layout, const Source& source, 
   const auto along = source.row(layout.along);
   to[1] = along.at(i), to[3] = along.at(i + 1);
 }
-/// The masses before the groups along a meridian at `a` in a cell, but the first.
+/// A group along a meridian, and the mass where it begins.
+struct Group {
+  std::ptrdiff_t g;
+  float start;
+};
+/// That in which the mass along the meridian at `a` in a cell reaches `target`.
 template <class Source>
-HWY_INLINE auto starts(const BatchLayout& layout, const Source& source, std::ptrdiff_t i, float b, float a) {
-  const std::ptrdiff_t length = layout.groups - 1;
-  return source.row(layout.starts + i * length, length, b, a);
+HWY_INLINE Group find_group(const BatchLayout& layout, const Source& source, std::ptrdiff_t i, float b, float a,
+                            float target) {
+  const std::ptrdiff_t length = layout.groups - 1;  // the first group begins at 0
+  const auto row = source.row(layout.starts + i * length, length, b, a);
+  const std::ptrdiff_t g = count_below(row, 0, length, target);
+  return {g, g > 0 ? row.at(g - 1) : 0.0f};
 }
 HWY_INLINE std::ptrdiff_t group_index(const BatchLayout& layout, std::ptrdiff_t g, std::ptrdiff_t i) {
   return (g * layout.meridians + i) * BatchLayout::group_codes;
@@ -191,20 +200,20 @@ HWY_INLINE Eight masses(const Eight& density, const float* r) {
   return mass.first(BatchLayout::group);
 }
 
-/// The cell between parallels where the mass along a meridian reaches `target`, in group g, which begins at the mass
-/// `start`: the last one with mass that begins before it. Stores both radii and both densities of the cell, and returns
+/// The cell between parallels where the mass along a meridian reaches `target`, in its group: the last one with mass
+/// that begins before it. Stores both radii and both densities of the cell, and returns
 /// the mass before it.
 template <class Source>
-HWY_INLINE float find_in_group(const BatchLayout& layout, const Source& source, std::ptrdiff_t g, std::ptrdiff_t i,
-                               float b, float a, float start, float target, float* cell) {
-  const float* r = source.lines + layout.r + g * BatchLayout::group;
-  const Eight density = source.group(group_index(layout, g, i), b, a).densities();
+HWY_INLINE float find_in_group(const BatchLayout& layout, const Source& source, const Group& group, std::ptrdiff_t i,
+                               float b, float a, float target, float* cell) {
+  const float* r = source.lines + layout.r + group.g * BatchLayout::group;
+  const Eight density = source.group(group_index(layout, group.g, i), b, a).densities();
   const Eight mass = masses(density, r);
   const Eight before = mass.sums_before();
-  const int j = before.last_below(target - start, mass);
+  const int j = before.last_below(target - group.start, mass);
   cell[0] = r[j], cell[1] = r[j + 1];
   density.from(j).template store_first<2>(cell + 2);
-  return start + hn::GetLane(before.from(j).x[0]);
+  return group.start + hn::GetLane(before.from(j).x[0]);
 }
 
 }  // namespace GONIO_LANES

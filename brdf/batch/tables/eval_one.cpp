@@ -17,21 +17,15 @@ namespace HWY_NAMESPACE {
 namespace {
 
 // One pair, by the code that serves many, on vectors of one element.
-glm::vec3 merl(const MerlTable& table, const glm::vec3& wi, const glm::vec3& wo) {
+template <class Table>
+HWY_INLINE glm::vec3 one(const Table& table, const glm::vec3& wi, const glm::vec3& wo) {
   glm::vec3 f_r;
-  eval_merl(table, 1, {&wi.x, &wi.y, &wi.z, &wo.x, &wo.y, &wo.z}, {&f_r.x, &f_r.y, &f_r.z});
+  eval_table(table, 1, {&wi.x, &wi.y, &wi.z, &wo.x, &wo.y, &wo.z}, {&f_r.x, &f_r.y, &f_r.z});
   return f_r;
 }
-glm::vec3 mbsdf(const MbsdfTable& table, const glm::vec3& wi, const glm::vec3& wo) {
-  glm::vec3 f_r;
-  eval_mbsdf(table, 1, {&wi.x, &wi.y, &wi.z, &wo.x, &wo.y, &wo.z}, {&f_r.x, &f_r.y, &f_r.z});
-  return f_r;
-}
-glm::vec3 rgl(const RglTable& table, const glm::vec3& wi, const glm::vec3& wo) {
-  glm::vec3 f_r;
-  eval_rgl(table, 1, {&wi.x, &wi.y, &wi.z, &wo.x, &wo.y, &wo.z}, {&f_r.x, &f_r.y, &f_r.z});
-  return f_r;
-}
+glm::vec3 merl(const MerlTable& table, const glm::vec3& wi, const glm::vec3& wo) { return one(table, wi, wo); }
+glm::vec3 mbsdf(const MbsdfTable& table, const glm::vec3& wi, const glm::vec3& wo) { return one(table, wi, wo); }
+glm::vec3 rgl(const RglTable& table, const glm::vec3& wi, const glm::vec3& wo) { return one(table, wi, wo); }
 
 }  // namespace
 }  // namespace HWY_NAMESPACE

@@ -35,17 +35,17 @@ struct HalfDifferenceAngles {
   }
 };
 
-HWY_INLINE void eval_merl(const MerlTable& table, std::size_t count, const float* const (&in)[6],
-                          float* const (&out)[3]) {
+HWY_INLINE void eval_table(const MerlTable& table, std::size_t count, const float* const (&in)[6],
+                           float* const (&out)[3]) {
   const int n_h = MerlFile::n_theta_h, n_d = MerlFile::n_theta_d, n_phi = table.n_phi_d();
   const RgbGrid grid(table.values(), n_h, n_d, n_phi);
-  eval_grid(grid, count, in, out, [&](const Pair& pair, RgbPlaces& places, std::size_t k) GONIO_INLINED {
+  eval_grid(grid, count, in, out, [&](const Pair& pair, RgbBlock& block, std::size_t k) GONIO_INLINED {
     const V per_degree = set(static_cast<float>(180 / pi<double>)), half = set(0.5f),
             period = set(static_cast<float>(n_phi));
     const HalfDifferenceAngles angles(pair);
     const V root = hn::Sqrt(hn::Mul(angles.theta_h, set(static_cast<float>(2 / pi<double>))));
-    const Place h = place_among(hn::MulSub(set(90), root, half), n_h);
-    const Place d = place_among(hn::MulSub(angles.theta_d, per_degree, half), n_d);
+    const Between h = between_clamped(hn::MulSub(set(90), root, half), n_h);
+    const Between d = between_clamped(hn::MulSub(angles.theta_d, per_degree, half), n_d);
     const V bin = hn::Mul(angles.phi_d, per_degree);
     V x = hn::Sub(hn::IfThenElse(hn::Lt(bin, zero()), hn::Add(bin, period), bin), half);
     // lerp_periodic(): from the last cell over the end to the first one. Of a NaN, cell 0.
@@ -54,23 +54,23 @@ HWY_INLINE void eval_merl(const MerlTable& table, std::size_t count, const float
     const VI last = set_int(n_phi - 1), before = truncated(base);
     const VI lo = hn::IfThenElse(hn::Lt(before, hn::Zero(DI())), last, before);
     const VI hi = hn::IfThenZeroElse(hn::Eq(lo, last), hn::Add(lo, set_int(1)));
-    places.set_at(k, hn::Add(hn::Mul(h.lo, set_int(n_d)), d.lo), lo, hi, hn::Sub(x, base), d.t, h.t);
+    block.set_at(k, hn::Add(hn::Mul(h.lo, set_int(n_d)), d.lo), lo, hi, hn::Sub(x, base), d.t, h.t);
   });
 }
 
-HWY_INLINE void eval_mbsdf(const MbsdfTable& table, std::size_t count, const float* const (&in)[6],
+HWY_INLINE void eval_table(const MbsdfTable& table, std::size_t count, const float* const (&in)[6],
                            float* const (&out)[3]) {
   const int n_in = table.n_theta_in(), n_out = table.n_theta_out(), n_phi = table.n_phi();
   const RgbGrid grid(table.values(), n_in, n_out, n_phi);
-  eval_grid(grid, count, in, out, [&](const Pair& pair, RgbPlaces& places, std::size_t k) GONIO_INLINED {
+  eval_grid(grid, count, in, out, [&](const Pair& pair, RgbBlock& block, std::size_t k) GONIO_INLINED {
     const auto place = [](V angle, float range, int n) GONIO_INLINED {
-      return place_among(hn::MulSub(angle, set(static_cast<float>(n) / range), set(0.5f)), n);
+      return between_clamped(hn::MulSub(angle, set(static_cast<float>(n) / range), set(0.5f)), n);
     };
-    const Place i = place(abs_atan2(length_xy(pair.wi), pair.wi.z), pi<float> / 2, n_in);
-    const Place o = place(abs_atan2(length_xy(pair.wo), pair.wo.z), pi<float> / 2, n_out);
-    const Place p = place(hn::Abs(relative_azimuth(pair.wi, pair.wo)), pi<float>, n_phi);
+    const Between i = place(abs_atan2(length_xy(pair.wi), pair.wi.z), pi<float> / 2, n_in);
+    const Between o = place(abs_atan2(length_xy(pair.wo), pair.wo.z), pi<float> / 2, n_out);
+    const Between p = place(hn::Abs(relative_azimuth(pair.wi, pair.wo)), pi<float>, n_phi);
     const VI next = n_phi > 1 ? hn::Add(p.lo, set_int(1)) : p.lo;
-    places.set_at(k, hn::Add(hn::Mul(i.lo, set_int(n_out)), o.lo), p.lo, next, p.t, o.t, i.t);
+    block.set_at(k, hn::Add(hn::Mul(i.lo, set_int(n_out)), o.lo), p.lo, next, p.t, o.t, i.t);
   });
 }
 

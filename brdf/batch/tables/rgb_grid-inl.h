@@ -19,11 +19,11 @@ namespace HWY_NAMESPACE {
 inline namespace GONIO_LANES {
 
 /// lerp_clamped(): a node and the weight of the next one. Of the last node that is 0, or the one before has weight 1.
-struct Place {
+struct Between {
   VI lo;
   V t;
 };
-HWY_INLINE Place place_among(V x, int n) {
+HWY_INLINE Between between_clamped(V x, int n) {
   const V clamped = hn::Min(hn::IfThenElseZero(hn::Gt(x, zero()), x), set(static_cast<float>(n - 1)));  // NaN: 0
   const VI lo = hn::Min(truncated(clamped), set_int(std::max(n - 2, 0)));
   return {lo, hn::Sub(clamped, hn::ConvertTo(D(), lo))};
@@ -43,7 +43,7 @@ struct RgbGrid {
 
 /// Where a block of elements lies among the cells: between a column and the next, `a` of the way, between rows `b`,
 /// between layers `c`. `row` counts those of all layers.
-struct RgbPlaces {
+struct RgbBlock {
   HWY_ALIGN int row[block_size], column[block_size], next_column[block_size];
   HWY_ALIGN float a[block_size], b[block_size], c[block_size];
 
@@ -57,29 +57,29 @@ struct RgbPlaces {
 
 /// The value at a place: four floats, the last without meaning. The eight cells are loaded as whole RGB triples: a
 /// third of the loads that gathers of single channels would make.
-HWY_INLINE void mix_rgb(const RgbGrid& grid, const RgbPlaces& places, std::size_t k, float* to) {
+HWY_INLINE void mix_rgb(const RgbGrid& grid, const RgbBlock& block, std::size_t k, float* to) {
   const hn::CappedTag<float, 4> d4;  // one triple, where vectors are that long
-  const float* first = grid.cells + 3 * (places.row[k] * grid.columns + places.column[k]);
-  const float* next = grid.cells + 3 * (places.row[k] * grid.columns + places.next_column[k]);
+  const float* first = grid.cells + 3 * (block.row[k] * grid.columns + block.column[k]);
+  const float* next = grid.cells + 3 * (block.row[k] * grid.columns + block.next_column[k]);
   const auto mixed = [](auto tag, float t, auto p, auto q)
                          GONIO_INLINED { return hn::MulAdd(hn::Set(tag, t), hn::Sub(q, p), p); };
   // Between rows and layers, of what `load` makes of a step from the first cell.
   const auto column = [&](auto tag, const auto& load) GONIO_INLINED {
-    return mixed(tag, places.c[k], mixed(tag, places.b[k], load(0), load(grid.next_row)),
-                 mixed(tag, places.b[k], load(grid.next_layer), load(grid.next_layer + grid.next_row)));
+    return mixed(tag, block.c[k], mixed(tag, block.b[k], load(0), load(grid.next_row)),
+                 mixed(tag, block.b[k], load(grid.next_layer), load(grid.next_layer + grid.next_row)));
   };
 #if HWY_TARGET <= HWY_AVX2
   const hn::FixedTag<float, 8> d8;  // two cells side by side
   const auto both = column(d8, [&](std::ptrdiff_t step) GONIO_INLINED {
     return hn::Combine(d8, hn::LoadU(d4, next + step), hn::LoadU(d4, first + step));
   });
-  hn::StoreU(mixed(d4, places.a[k], hn::LowerHalf(both), hn::UpperHalf(d4, both)), d4, to);
+  hn::StoreU(mixed(d4, block.a[k], hn::LowerHalf(both), hn::UpperHalf(d4, both)), d4, to);
 #else
   for (std::size_t channel = 0; channel < 4; channel += hn::Lanes(d4)) {
     const auto of = [&](const float* cell) GONIO_INLINED {
       return column(d4, [&](std::ptrdiff_t step) GONIO_INLINED { return hn::LoadU(d4, cell + step + channel); });
     };
-    hn::StoreU(mixed(d4, places.a[k], of(first), of(next)), d4, to + channel);
+    hn::StoreU(mixed(d4, block.a[k], of(first), of(next)), d4, to + channel);
   }
 #endif
 }
@@ -87,11 +87,11 @@ HWY_INLINE void mix_rgb(const RgbGrid& grid, const RgbPlaces& places, std::size_
 /// The values of `count` elements, a block of whole vectors at most, times scale(k), a vector of factors. Negative ones
 /// become 0.
 template <class Scale>
-HWY_INLINE void find_rgb(const RgbGrid& grid, const RgbPlaces& places, std::size_t count, const Scale& scale,
+HWY_INLINE void find_rgb(const RgbGrid& grid, const RgbBlock& block, std::size_t count, const Scale& scale,
                          float* const (&out)[3]) {
   const D d;
   HWY_ALIGN float rgb[4 * block_size];
-  for (std::size_t k = 0; k < count; ++k) mix_rgb(grid, places, k, rgb + 4 * k);
+  for (std::size_t k = 0; k < count; ++k) mix_rgb(grid, block, k, rgb + 4 * k);
   for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
     V channel[3], unused;
     load4(rgb + 4 * k, channel[0], channel[1], channel[2], unused);
@@ -121,20 +121,20 @@ HWY_INLINE V relative_azimuth(const Direction& wi, const Direction& w) {
   return atan2(hn::MulSub(x, w.y, hn::Mul(y, w.x)), hn::MulAdd(x, w.x, hn::Mul(y, w.y)));
 }
 
-/// MerlTable and MbsdfTable: places_of(pair, places, k) says where among the cells a vector of pairs lies.
-template <class PlacesOf>
+/// MerlTable and MbsdfTable: fill(pair, block, k) says where among the cells a vector of pairs lies.
+template <class Fill>
 HWY_INLINE void eval_grid(const RgbGrid& grid, std::size_t count, const float* const (&in)[6], float* const (&out)[3],
-                          const PlacesOf& places_of) {
+                          const Fill& fill) {
   for_blocks(count, in, out, [&](auto elements, const float* const(&x)[6], float* const(&y)[3]) GONIO_INLINED {
-    RgbPlaces places;
+    RgbBlock block;
     HWY_ALIGN float share[block_size];
     for (std::size_t k = 0; k < elements; k += hn::Lanes(D())) {
       const Pair pair(x, k);
-      places_of(pair, places, k);
+      fill(pair, block, k);
       hn::Store(hn::IfThenElseZero(pair.above, set(1)), D(), share + k);
     }
     find_rgb(
-        grid, places, elements, [&](std::size_t k) GONIO_INLINED { return hn::Load(D(), share + k); }, y);
+        grid, block, elements, [&](std::size_t k) GONIO_INLINED { return hn::Load(D(), share + k); }, y);
   });
 }
 

@@ -17,7 +17,7 @@ namespace HWY_NAMESPACE {
 inline namespace GONIO_LANES {
 
 /// The incident angle of the file before theta, and how far theta is from there to the next.
-HWY_INLINE Place slice_at(const std::vector<float>& theta_i, V theta) {
+HWY_INLINE Between slice_at(const std::vector<float>& theta_i, V theta) {
   const auto n = static_cast<int>(theta_i.size());
   if (n == 1) return {hn::Zero(DI()), zero()};
   VI lo = hn::Zero(DI());
@@ -27,10 +27,10 @@ HWY_INLINE Place slice_at(const std::vector<float>& theta_i, V theta) {
   return {lo, clamp01(hn::Div(hn::Sub(theta, around.first), hn::Sub(around.second, around.first)))};
 }
 
-HWY_INLINE Place place_on(V x, int n) { return place_among(hn::Mul(x, set(static_cast<float>(n - 1))), n); }
+HWY_INLINE Between between_evenly(V x, int n) { return between_clamped(hn::Mul(x, set(static_cast<float>(n - 1))), n); }
 
 /// Along the line of nodes that starts at `row`.
-HWY_INLINE V on_line(const float* values, VI row, const Place& x) {
+HWY_INLINE V on_line(const float* values, VI row, const Between& x) {
   const Two around = two_at(values, hn::Add(row, x.lo));
   return mix(x.t, around.first, around.second);
 }
@@ -44,10 +44,10 @@ struct WarpBlock {
   HWY_ALIGN float t[block_size], x[block_size], y[block_size];
   HWY_ALIGN float nodes[4 * block_size], lines[4 * block_size];
 
-  HWY_INLINE void set_at(std::size_t k, const Warp2d& warp, const Place& of_slice, V u_theta, V u_phi) {
+  HWY_INLINE void set_at(std::size_t k, const Warp2d& warp, const Between& of_slice, V u_theta, V u_phi) {
     const D d;
     const DI di;
-    const Place px = place_on(u_theta, warp.width()), py = place_on(u_phi, warp.height());
+    const Between px = between_evenly(u_theta, warp.width()), py = between_evenly(u_phi, warp.height());
     hn::Store(of_slice.lo, di, slice + k), hn::Store(px.lo, di, i + k), hn::Store(py.lo, di, j + k);
     hn::Store(of_slice.t, d, t + k), hn::Store(px.t, d, x + k), hn::Store(py.t, d, y + k);
   }
@@ -88,8 +88,8 @@ struct WarpBlock {
   }
 };
 
-HWY_INLINE void eval_rgl(const RglTable& table, std::size_t count, const float* const (&in)[6],
-                         float* const (&out)[3]) {
+HWY_INLINE void eval_table(const RglTable& table, std::size_t count, const float* const (&in)[6],
+                           float* const (&out)[3]) {
   const auto slices = static_cast<int>(table.theta_i().size());
   const int height = table.colour_height(), width = table.colour_width();
   const RgbGrid grid(table.colour(), slices, height, width);
@@ -100,7 +100,7 @@ HWY_INLINE void eval_rgl(const RglTable& table, std::size_t count, const float* 
   for_blocks(count, in, out, [&](auto elements, const float* const(&x)[6], float* const(&y)[3]) GONIO_INLINED {
     const D d;
     WarpBlock warps;
-    RgbPlaces places;
+    RgbBlock block;
     HWY_ALIGN float factor[block_size];
     for (std::size_t k = 0; k < elements; k += hn::Lanes(d)) {
       const Pair pair(x, k);
@@ -114,13 +114,13 @@ HWY_INLINE void eval_rgl(const RglTable& table, std::size_t count, const float* 
       warps.set_at(k, warp, slice_at(table.theta_i(), theta_i), u_theta, u_phi);
       V scale = hn::Div(set(1), hn::Max(pair.wo.z, set(RglTable::min_cosine)));
       if (table.jacobian()) {
-        const Place across = place_on(u_theta, ndf.width), along = place_on(u_phi, ndf.height);
+        const Between across = between_evenly(u_theta, ndf.width), along = between_evenly(u_phi, ndf.height);
         const VI row = hn::Mul(along.lo, set_int(ndf.width));
         const VI next_row = ndf.height > 1 ? hn::Add(row, set_int(ndf.width)) : row;
         const V density =
             mix(along.t, on_line(ndf.values.data(), row, across), on_line(ndf.values.data(), next_row, across));
         const V angle = hn::Sqrt(hn::Mul(theta_i, set(2 / pi<float>)));
-        const V area = on_line(sigma.data(), hn::Zero(DI()), place_on(angle, static_cast<int>(sigma.size())));
+        const V area = on_line(sigma.data(), hn::Zero(DI()), between_evenly(angle, static_cast<int>(sigma.size())));
         // A damaged file may hold an ndf and a sigma whose quotient no float holds.
         scale =
             hn::Min(hn::Mul(scale, quotient(density, hn::Mul(set(4), area))), set(std::numeric_limits<float>::max()));
@@ -130,12 +130,12 @@ HWY_INLINE void eval_rgl(const RglTable& table, std::size_t count, const float* 
     for (std::size_t k = 0; k < elements; ++k) warps.load(k, warp, next_slice);
     for (std::size_t k = 0; k < elements; k += hn::Lanes(d)) {
       const WarpBlock::Point at = warps.point(k, warp);
-      const Place across = place_on(at.x, width), along = place_on(at.y, height);
+      const Between across = between_evenly(at.x, width), along = between_evenly(at.y, height);
       const VI row = hn::Add(hn::Mul(hn::Load(DI(), warps.slice + k), set_int(height)), along.lo);
-      places.set_at(k, row, across.lo, hn::Add(across.lo, set_int(1)), across.t, along.t, hn::Load(d, warps.t + k));
+      block.set_at(k, row, across.lo, hn::Add(across.lo, set_int(1)), across.t, along.t, hn::Load(d, warps.t + k));
     }
     find_rgb(
-        grid, places, elements, [&](std::size_t k) GONIO_INLINED { return hn::Load(D(), factor + k); }, y);
+        grid, block, elements, [&](std::size_t k) GONIO_INLINED { return hn::Load(D(), factor + k); }, y);
   });
 }
 

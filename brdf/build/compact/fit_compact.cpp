@@ -198,7 +198,7 @@ class Fitter {
     std::size_t diagram, lines;  // a diagram; what there is once
 
     explicit Size(const SharedLines& shared) {
-      const std::size_t m = shared.across.size(), n = shared.along.size();
+      const auto m = static_cast<int>(shared.across.size()), n = static_cast<int>(shared.along.size());
       diagram = BatchLayout::diagram_bytes(m, n);
       lines = BatchLayout::lines_bytes(m, n) + sizeof(Colour) + 200;
     }

@@ -35,11 +35,11 @@ StackGrid build_stack(const BrdfTable& table, const BsdfOptions& options, const 
   const bool blend = options.interpolation == Interpolation::blend;
   std::optional<LineFit> shared;
   if (blend) shared.emplace(detail::prepare_lines(table, chart, options.meridians, options.parallels));
-  detail::GrowthLimits limits{
-      7, static_cast<std::size_t>(options.incident), options.budget, tolerance, [](const Diagram<double>& d) {
-        const auto m = static_cast<std::size_t>(d.meridians()), n = static_cast<std::size_t>(d.parallels());
-        return BatchLayout::diagram_bytes(m, n) + BatchLayout::lines_bytes(m, n);
-      }};
+  detail::GrowthLimits limits{7, static_cast<std::size_t>(options.incident), options.budget, tolerance,
+                              [](const Diagram<double>& d) {
+                                return BatchLayout::diagram_bytes(d.meridians(), d.parallels()) +
+                                       BatchLayout::lines_bytes(d.meridians(), d.parallels());
+                              }};
   // When the memory does not suffice for the tolerance, diagrams of that quality leave too few of
   // them: coarser ones at more angles may do better. The tolerance grows as long as they do.
   std::optional<detail::Grown> best;

@@ -4,20 +4,24 @@
 #include <gonio/mapping/numeric/monotone_root.h>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "gonio/brdf/batch/tables/many_grid.cpp"
+#define HWY_TARGET_INCLUDE "gonio/brdf/batch/tables/eval_many.cpp"
 #include <hwy/foreach_target.h>
 
 #include <gonio/brdf/batch/tables/grid_tables-inl.h>
+#include <gonio/brdf/batch/tables/rgl_table-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace gonio {
 namespace HWY_NAMESPACE {
 
 void merl_n(const MerlTable& table, std::size_t count, const float* const (&in)[6], float* const (&out)[3]) {
-  eval_merl(table, count, in, out);
+  eval_table(table, count, in, out);
 }
 void mbsdf_n(const MbsdfTable& table, std::size_t count, const float* const (&in)[6], float* const (&out)[3]) {
-  eval_mbsdf(table, count, in, out);
+  eval_table(table, count, in, out);
+}
+void rgl_n(const RglTable& table, std::size_t count, const float* const (&in)[6], float* const (&out)[3]) {
+  eval_table(table, count, in, out);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -30,6 +34,7 @@ namespace {
 
 HWY_EXPORT(merl_n);
 HWY_EXPORT(mbsdf_n);
+HWY_EXPORT(rgl_n);
 
 }  // namespace
 
@@ -40,6 +45,9 @@ void eval_many(const MerlTable& table, std::size_t count, const float* const (&i
 void eval_many(const MbsdfTable& table, std::size_t count, const float* const (&in)[6],
                float* const (&out)[3]) noexcept {
   HWY_DYNAMIC_DISPATCH(mbsdf_n)(table, count, in, out);
+}
+void eval_many(const RglTable& table, std::size_t count, const float* const (&in)[6], float* const (&out)[3]) noexcept {
+  HWY_DYNAMIC_DISPATCH(rgl_n)(table, count, in, out);
 }
 
 }  // namespace gonio
